@@ -21,7 +21,7 @@ constexpr int kQuickRepeat = 3;
 Result<std::vector<Size>> parse_sizes(const std::string& text) {
   std::vector<Size> out;
   for (const auto& part : split(text, ',')) {
-    AFTERGLOW_TRY(const Size size, parse_size(trim(part)));
+    AFTERGLOW_TRY(const Size size, parse_size(trim(part), "--sizes"));
     out.push_back(size);
   }
   return out;
@@ -65,7 +65,7 @@ void BenchArguments::add(CLI::App& app) {
   app.add_option("--compare", compare, "Print ratios to an older bench.json; exit code 1 beyond --threshold")
       ->type_name("OLD.json");
   app.add_option("--threshold", threshold, "How many times as slow is too slow (default 1.15)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("R");
   execution.add_max_error(app);
   execution.add_calibration(app);
@@ -93,7 +93,7 @@ Result<StackOptions> BenchArguments::stack() const {
 
 Result<bench::MatrixRequest> BenchArguments::matrix() const {
   bench::MatrixRequest out;
-  out.presets = presets;
+  AFTERGLOW_TRY(out.presets, files());
   AFTERGLOW_TRY(out.base, stack());
   AFTERGLOW_TRY(out.sizes, parse_sizes(!sizes.empty() ? sizes : quick ? kQuickSizes : kSizes));
   AFTERGLOW_TRY(const auto named, bench::parse_variants(!variants.empty() ? variants

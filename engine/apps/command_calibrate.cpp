@@ -10,7 +10,6 @@
 #include "apps/options.h"
 #include "apps/output.h"
 #include "bench/calibrate.h"
-#include "core/file.h"
 #include "core/paths.h"
 #include "core/table.h"
 
@@ -44,7 +43,11 @@ Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
   const auto looks = find_installation() / "calibration";
   bench::CalibrationRequest request{
       .look = a.look, .reductions = looks / "reductions.lua", .base = {}, .size = {}, .repeat = a.repeat};
-  if (a.look.empty()) request.look = looks / "look.lua";
+  if (a.look.empty()) {
+    request.look = looks / "look.lua";
+  } else {
+    AFTERGLOW_TRY(request.look, find_preset_file(a.look, {}));
+  }
   AFTERGLOW_TRY(request.size, parse_size(a.size));
   request.base.cache_folder = cache_folder();
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
@@ -59,7 +62,7 @@ Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
   console.end_progress();
   print(result);
   if (a.out.empty()) return {};
-  return write_file_atomically(a.out, bench::calibration_json(result));
+  return output_file(a.out, bench::calibration_json(result));
 }
 
 }  // namespace

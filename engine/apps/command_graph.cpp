@@ -11,7 +11,6 @@
 #include "apps/setting_text.h"
 #include "apps/traffic_view.h"
 #include "batch/crop.h"
-#include "core/file.h"
 #include "core/json_text.h"
 
 namespace afterglow {
@@ -54,7 +53,7 @@ Result<std::string> traffic_of_look(const GraphArguments& arguments, const std::
 }
 
 Result<void> write_text(const GraphArguments& arguments, const std::string& text) {
-  if (!arguments.output.empty()) return write_file_atomically(arguments.output, text);
+  if (!arguments.output.empty()) return output_file(arguments.output, text);
   output("{}", text);
   return {};
 }
@@ -97,7 +96,7 @@ Command add_graph_command(CLI::App& program) {
                 "In place of the passes: the bytes that kernels read and write, in each way of execution");
   app->add_option("--bandwidth", arguments->bandwidth,
                   "With --traffic: how long a device of so many GB/s takes for them")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("GB/s");
   app->footer("Needs no Vulkan device.\nExample: afterglow graph presets/neon_night.lua -o neon.svg");
   return {app, [arguments](Console& console) { return run_graph(*arguments, console); }};

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,7 +30,8 @@ constexpr const char* kFooter =
     "Environment: AFTERGLOW_HOME installation to use, AFTERGLOW_PATH further folders with effects/ and shaders/ (':' "
     "between),\n"
     "             AFTERGLOW_CACHE folder for caches, AFTERGLOW_VALIDATE=1 Vulkan validation, NO_COLOR no colours,\n"
-    "             AFTERGLOW_EDITOR what F4 of `play` calls, like 'code -g {file}:{line}'.\n"
+    "             AFTERGLOW_EDITOR what F4 of `play` calls, like 'code -g {file}:{line}', OCIO the configuration of\n"
+    "             colour spaces, AFTERGLOW_INPUT_TIMEOUT seconds to wait for slow input.\n"
     "`afterglow COMMAND --help` tells the rest.";
 
 std::vector<std::string> option_names(const CLI::App& command) {
@@ -46,6 +48,17 @@ bool is_file_like_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && std::filesystem::exists(word, none);
 }
 
+/// Its dashes make an option no more like another.
+std::string nearest_option(const std::string& name, const std::vector<std::string>& options) {
+  const auto bare = [](const std::string& option) { return option.substr(option.find_first_not_of('-')); };
+  std::vector<std::string> names;
+  if (name.find_first_not_of('-') == std::string::npos) return {};
+  std::ranges::transform(options, std::back_inserter(names), bare);
+  const std::string nearest = nearest_name(bare(name), names);
+  const auto at = std::ranges::find(names, nearest) - names.begin();
+  return nearest.empty() ? nearest : options[static_cast<std::size_t>(at)];
+}
+
 /// An option or word that the command does not know, with the nearest that it does.
 Error unknown_argument(const CLI::App& command, const std::string& argument) {
   const std::string where = "afterglow " + command.get_name();
@@ -55,12 +68,13 @@ Error unknown_argument(const CLI::App& command, const std::string& argument) {
     return {ErrorKind::usage, fmt::format("'{}' is read as an option; name the file ./{}", argument, argument), where};
   const std::string name = argument.substr(0, argument.find('='));
   Error error{ErrorKind::usage, fmt::format("unknown option '{}'", name), where};
-  error.nearest = nearest_name(name, option_names(command));
+  error.nearest = nearest_option(name, option_names(command));
   if (error.nearest.empty()) error.allowed = fmt::format("see `{} --help`", where);
   return error;
 }
 
 Error unknown_command(const std::string& word, const std::vector<Command>& commands) {
+  if (word == "help") return {ErrorKind::usage, "unknown command 'help'", "afterglow", 0, "see `afterglow --help`"};
   std::vector<std::string> names;
   for (const auto& command : commands) names.push_back(command.options->get_name());
   return {ErrorKind::usage,         fmt::format("unknown command '{}'", word), "afterglow", 0, join(names),

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// `afterglow new effect NAME`: a working effect to start from.
+// `afterglow new effect NAME`, `afterglow new look NAME`: something that works to start from.
 //
-// The templates are a tree of files in the installation that work by themselves; in names and texts, the word my_effect
-// becomes the new name.
+// The templates are a tree of files in the installation that work by themselves; in names and texts, the words
+// my_effect and my_look become the new name.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -25,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPlaceholder = "my_effect";
+constexpr std::array<std::string_view, 2> kPlaceholders{"my_effect", "my_look"};
 
 struct NewArguments {
   std::string kind, name, folder = ".";
@@ -38,8 +39,9 @@ struct NewFile {
 };
 
 std::string renamed(std::string text, const std::string& name) {
-  for (std::size_t at = 0; (at = text.find(kPlaceholder, at)) != std::string::npos; at += name.size())
-    text.replace(at, kPlaceholder.size(), name);
+  for (const auto placeholder : kPlaceholders)
+    for (std::size_t at = 0; (at = text.find(placeholder, at)) != std::string::npos; at += name.size())
+      text.replace(at, placeholder.size(), name);
   return text;
 }
 
@@ -78,7 +80,9 @@ Result<void> write_new(const fs::path& path, const NewFile& file) {
 
 Result<void> run_new(const NewArguments& arguments) {
   const fs::path folder = arguments.folder;
-  AFTERGLOW_CHECK(check_new_effect_name(arguments.name, search_path_for(folder / "preset.lua", {})));
+  const bool is_effect = arguments.kind == "effect";
+  AFTERGLOW_CHECK(is_effect ? check_new_effect_name(arguments.name, search_path_for(folder / "preset.lua", {}))
+                            : check_new_look_name(arguments.name));
   AFTERGLOW_TRY(const auto files, files_of(find_installation() / "templates" / arguments.kind, arguments.name));
   for (const auto& file : files)
     if (fs::exists(fs::symlink_status(folder / file.path)))
@@ -91,19 +95,26 @@ Result<void> run_new(const NewArguments& arguments) {
     return written;
   }
   for (const auto& file : files) output("{}\n", (folder / file.path).lexically_normal().string());
-  output("Try it:  afterglow run {}.lua PICTURE -o out.png\nTest it: tests/{}.sh\n", arguments.name, arguments.name);
+  const auto place = [&](const char* file) {
+    return (folder / fmt::format(fmt::runtime(file), arguments.name)).lexically_normal().string();
+  };
+  output("Try it:  afterglow run {} PICTURE -o out.png\n", place("{}.lua"));
+  if (is_effect) output("Test it: {}\n", place("tests/{}.sh"));
   return {};
 }
 
 }  // namespace
 
 Command add_new_command(CLI::App& program) {
-  auto* app = program.add_subcommand("new", "Write a working effect to start from: script, shader, example, test");
+  auto* app = program.add_subcommand(
+      "new", "Write something that works to start from: a look, or an effect with script, shader, example, test");
   auto arguments = std::make_shared<NewArguments>();
-  app->add_option("KIND", arguments->kind, "What to write: effect")->required()->check(CLI::IsMember({"effect"}));
+  app->add_option("KIND", arguments->kind, "What to write: look, effect")
+      ->required()
+      ->check(CLI::IsMember({"look", "effect"}));
   app->add_option("NAME", arguments->name, "Its name: letters, digits and '_'")->required();
   app->add_option("--in", arguments->folder, "Folder to write into (default: this one)")->type_name("FOLDER");
-  app->footer("Never overwrites a file.\nExample: afterglow new effect haze");
+  app->footer("Never overwrites a file.\nExamples:\n  afterglow new look dusk\n  afterglow new effect haze");
   return {app, [arguments](Console&) { return run_new(*arguments); }};
 }
 

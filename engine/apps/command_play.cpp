@@ -23,7 +23,7 @@ namespace {
 Result<void> write_report(const PlayArguments& a, const std::string& text, bool& reported) {
   if (a.report.empty()) return {};
   reported = true;
-  return write_file_atomically(a.report, text);
+  return output_file(a.report, text);
 }
 
 Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console,

@@ -8,7 +8,6 @@
 #include "apps/run_events.h"
 #include "apps/sandbox.h"
 #include "batch/run_report.h"
-#include "core/file.h"
 
 namespace afterglow {
 namespace {
@@ -26,7 +25,7 @@ Result<void> run_run(const RunArguments& a, Console& console) {
   auto done = run_batch(request, run_events(console), report);
   if (!a.stats.empty() && report.session) output("{}", report_text(report, a.stats == "passes"));
   if (!a.report.empty()) {
-    auto written = write_file_atomically(a.report, report_json(report));
+    auto written = output_file(a.report, report_json(report));
     if (done && !written) return written;
   }
   return done;
@@ -41,7 +40,7 @@ Command add_run_command(CLI::App& program) {
   app->footer(
       "Examples:\n"
       "  afterglow run presets/neon_night.lua render.exr -o render.png\n"
-      "  afterglow run look.lua shot.####.exr -o graded/shot.####.exr --frames 1-240 --resume\n"
+      "  afterglow run look.lua shot.####.exr -o graded/ --frames 1-240 --resume\n"
       "  afterglow run look.lua *.exr -o graded/ --format png --set bloom.intensity=0.4 --stats\n"
       "  afterglow run look.lua clip.mov -o graded.mp4 --crf 16\n"
       "  ffmpeg -i clip.mp4 -f yuv4mpegpipe - | afterglow run look.lua - -o - | ffmpeg -i - graded.mp4\n"

@@ -2,6 +2,7 @@
 // `afterglow set`: changes settings in the text of a preset. No device needed.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "apps/command.h"
@@ -38,6 +39,9 @@ Result<std::vector<PresetEdit>> edits_of(const SetArguments& arguments, const st
     return Error{ErrorKind::usage, "nothing to change", "afterglow set", 0,
                  "ENTRY.SETTING=VALUE, --reset ENTRY.SETTING"};
   AFTERGLOW_TRY(const auto wanted, overrides_of(arguments.settings));
+  for (const auto& one : wanted)
+    if (const std::string name = one.entry + "." + one.setting; std::ranges::count(arguments.resets, name) > 0)
+      return Error{ErrorKind::usage, fmt::format("'{}' is to be set and reset", name), "afterglow set"};
   ShaderLibrary shaders(search_path_for(file, options.paths));
   AFTERGLOW_TRY(const Preset preset, Preset::load(file, options, shaders, console.diagnostics()));
   AFTERGLOW_TRY(auto edits, parse_edits(preset, wanted));
@@ -74,9 +78,7 @@ Command add_set_command(CLI::App& program) {
       ->required();
   app->add_option("SETTING", arguments->settings, "What is to be: bloom.intensity=0.4, bloom.enabled=false")
       ->type_name("ENTRY.SETTING=VALUE");
-  app->add_option("--reset", arguments->resets, "Back to the default; may be repeated")
-      ->type_name("ENTRY.SETTING")
-      ->allow_extra_args(false);
+  add_repeatable(*app, "--reset", arguments->resets, "Back to the default (repeatable)", "ENTRY.SETTING");
   app->add_flag("-n,--dry-run", arguments->dry_run, "Show what would change; write nothing");
   arguments->preset.add_paths(*app);
   app->footer(

@@ -9,7 +9,6 @@
 #include "apps/interrupt.h"
 #include "apps/output.h"
 #include "apps/stress_arguments.h"
-#include "core/file.h"
 #include "core/table.h"
 
 namespace afterglow {
@@ -81,7 +80,7 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
     if (!report) return std::move(report).error();
     output("{}", stress::report_text(*report));
     std::fflush(stdout);
-    if (!a.report.empty()) AFTERGLOW_CHECK(write_file_atomically(a.report_file(device), stress::report_json(*report)));
+    if (!a.report.empty()) AFTERGLOW_CHECK(output_file(a.report_file(device), stress::report_json(*report)));
     failures += report->summary.failures;
     clean = clean && report->clean();
     if (interrupted()) return interrupt_error();

@@ -26,6 +26,14 @@ void MessageArguments::apply(Console& console) const {
   console.configure(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal, !no_color);
 }
 
+CLI::Validator above_zero() {
+  const auto fault = [](const std::string& text) {
+    const auto number = parse_number<double>(text);
+    return number && *number > 0 ? std::string() : fmt::format("{} is no number above 0", text);
+  };
+  return {fault, "POSITIVE"};
+}
+
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
                             const std::string& help, const char* type) {
   return command.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
@@ -152,7 +160,7 @@ void ExecutionArguments::add_max_error(CLI::App& command) {
       .add_option(
           "--max-error", max_error,
           "Allowed relative error; 1e-4 and less: full floats, exact sampling (default: the preset's, else 2e-3)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("E")
       ->group("Device");
 }
@@ -179,7 +187,7 @@ Result<StackOptions> ExecutionArguments::options() const {
   return options;
 }
 
-Result<Size> parse_size(const std::string& text) {
+Result<Size> parse_size(const std::string& text, const char* option) {
   const auto parts = split(lower(text), 'x');
   Size size;
   const auto number = [](const std::string& part, int& out) {
@@ -187,7 +195,7 @@ Result<Size> parse_size(const std::string& text) {
     return out >= 1 && out <= 16384;
   };
   if (parts.size() != 2 || !number(parts[0], size.width) || !number(parts[1], size.height))
-    return Error{ErrorKind::usage, fmt::format("'{}' is no size", text), "--size", 0, "WIDTHxHEIGHT, each 1 to 16384"};
+    return Error{ErrorKind::usage, fmt::format("'{}' is no size", text), option, 0, "WIDTHxHEIGHT, each 1 to 16384"};
   return size;
 }
 
@@ -251,7 +259,7 @@ void AssumedPicture::add(CLI::App& command) {
       ->type_name("N")
       ->group("Picture");
   command.add_option("--fps", fps, "Frames a second, for animated presets (default 24)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("N")
       ->group("Picture");
   add_repeatable(command, "--without", without,

@@ -24,6 +24,9 @@ struct MessageArguments {
   void apply(Console& console) const;
 };
 
+/// Numbers above 0. (CLI11's own tells of them as "0.000000 to 1797…", 308 digits.)
+CLI::Validator above_zero();
+
 /// An option that may be given several times, with one value each.
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
                             const std::string& help, const char* type);
@@ -81,7 +84,7 @@ struct ExecutionArguments {
 };
 
 /// "1920x1080". Errors: usage.
-Result<Size> parse_size(const std::string& text);
+Result<Size> parse_size(const std::string& text, const char* option = "--size");
 /// "X,Y,W,H": whole numbers, X and Y not negative, W and H at least 1. Errors: usage.
 Result<Rect> parse_region(const std::string& text);
 /// "6G", "512M", "1.5GiB", "1000000": bytes, units of 1024. Errors: usage.

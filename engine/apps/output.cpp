@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "core/file.h"
+
 namespace afterglow {
 namespace {
 
@@ -21,6 +23,12 @@ void note_failure() {
 void output_text(const std::string& text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) note_failure();
+}
+
+Result<void> output_file(const std::string& file, const std::string& text) {
+  if (file != "-") return write_file_atomically(file, text);
+  output_text(text);
+  return {};
 }
 
 Result<void> finish_output() {

@@ -19,6 +19,9 @@ void output(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   output_text(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
+/// The content of a file that a command was asked for; "-": standard output. Errors: io.
+Result<void> output_file(const std::string& file, const std::string& text);
+
 /// Writes what is still on its way. Errors (io): something could not be written. A reader that has gone
 /// (`afterglow effects | head -1`) is no error.
 Result<void> finish_output();

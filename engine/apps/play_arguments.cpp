@@ -45,7 +45,7 @@ void PlayArguments::add_input(CLI::App& app) {
 void PlayArguments::add_playing(CLI::App& app) {
   const std::string group = "Playing", alone = "Without a window";
   app.add_option("--fps", fps, "Frames a second (default: the video's, else 24)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("N")
       ->group(group);
   app.add_option("--speed", speed, "0.1 to 8, below 0 backwards (default 1)")->type_name("X")->group(group);
@@ -80,7 +80,7 @@ void PlayArguments::add_playing(CLI::App& app) {
       ->group(window);
   app.add_flag("--headless", headless, "Play without a window, and end")->group(alone);
   app.add_option("--count", count, "Frames to play, looping as --loop says (default: each once)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("N")
       ->group(alone);
   auto* clock =

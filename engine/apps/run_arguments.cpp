@@ -60,7 +60,7 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->type_name("LIST")
       ->group(sequence);
   app.add_option("--fps", a.fps, "Frames a second, for animated presets (default 24)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("N")
       ->group(sequence);
   app.add_option(
@@ -157,7 +157,8 @@ void add_reports(CLI::App& app, RunArguments& a) {
       ->check(CLI::IsMember({"total", "passes"}))
       ->type_name("[=passes]")
       ->group("Messages");
-  app.add_option("--report", a.report, "Write times, skipped passes with reasons, and memory as JSON")
+  app.add_option("--report", a.report,
+                 "Write times, skipped passes with reasons, and memory as JSON (-: standard output)")
       ->type_name("FILE.json")
       ->group("Messages");
 }
@@ -282,6 +283,8 @@ Result<BatchRequest> RunArguments::request() const {
                    .locked = locked};
   if (watch && files.frames.empty())
     return Error{ErrorKind::usage, "--watch needs --frames: it ends when they are done"};
+  if (report == "-" && files.output == "-")
+    return Error{ErrorKind::usage, "--report - and -o - are both standard output"};
   out.watch = watch;
   layers.choose(out.files);
   AFTERGLOW_TRY(out.session, session_options(*this));

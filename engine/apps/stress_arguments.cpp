@@ -38,7 +38,7 @@ void StressArguments::add(CLI::App& app) {
   add_repeatable(app, "--effect", effects, "Only this effect (repeatable)", "NAME");
   preset.add_paths(app);
   app.add_option("--seed", seed, "What is tried is made from this number alone (default 1)")->type_name("N");
-  app.add_option("--cases", cases, "End after so many cases")->check(CLI::PositiveNumber)->type_name("N");
+  app.add_option("--cases", cases, "End after so many cases")->check(above_zero())->type_name("N");
   app.add_option("--trial", trial, "Only the trial of this number, as reports and kept cases name it")->type_name("N");
   app.add_option("--for", duration,
                  "End after this time: 30s, 10m, 2h (default: when every effect has had all its limits)")

@@ -7,6 +7,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/file.h"
 #include "core/text.h"
 #include "image/sequence.h"
 #include "image/video_writer.h"
@@ -270,9 +271,12 @@ Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diag
     }
   }
   if (!request.raw.empty() && !standard) return usage("--raw is for frames on standard input: give - as the input");
-  if (list.jobs.size() > 1 && names.one_file())
+  if (list.jobs.size() > 1 && names.one_file()) {
+    for (const FrameJob& job : list.jobs)  // a word that is no picture is what was meant, not a pattern
+      if (!job.movie && !frames && !is_file(job.input)) return missing_file(job.input);
     return usage(fmt::format("{} frames cannot go into the one file {}; give a pattern like out.####.png or a folder",
                              list.jobs.size(), request.output));
+  }
   AFTERGLOW_CHECK(check_outputs(list.jobs, names.takes_all()));
   return list;
 }

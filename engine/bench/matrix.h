@@ -29,7 +29,7 @@ inline constexpr const char* kDefaultVariants =
     "fused fp32 storage-reads,fused-filters fp32 rows8,fused fp32 storage-reads rows8,chosen";
 
 struct MatrixRequest {
-  std::vector<std::string> presets;
+  std::vector<std::filesystem::path> presets;
   StackOptions base;
   std::vector<Size> sizes;
   std::vector<Variant> variants;

@@ -178,7 +178,7 @@ Result<void> write_webp(const Picture& picture, const OutputFormat& format, Outp
   constexpr float kQuality = 90;
   AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   std::optional<float> quality;
-  if (compression.name == "lossy") quality = compression.level < 0 ? kQuality : std::min(compression.level, 100.0f);
+  if (compression.name == "lossy") quality = compression.level < 0 ? kQuality : compression.level;
   return write_webp(picture, strip_form(picture, format, options), out, quality);
 }
 

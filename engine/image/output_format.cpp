@@ -71,10 +71,13 @@ const OutputFormat* find_format(const std::filesystem::path& file) {
   return found == formats().end() ? nullptr : &*found;
 }
 
-/// Methods that take a level: EXR's a zlib level, or the error that DWA allows; WebP's a quality.
-bool takes_level(const OutputFormat& format, const std::string& name) {
-  if (format.kind == OutputKind::webp) return name == "lossy";
-  return format.kind == OutputKind::exr && (name == "zip" || name == "zips" || name == "dwaa" || name == "dwab");
+/// The largest level of methods that take one: EXR's a zlib level, or the error that DWA allows; WebP's a quality.
+std::optional<float> largest_level(const OutputFormat& format, const std::string& name) {
+  if (format.kind == OutputKind::webp && name == "lossy") return 100.0f;
+  if (format.kind != OutputKind::exr) return {};
+  if (name == "zip" || name == "zips") return 9.0f;
+  if (name == "dwaa" || name == "dwab") return 1e5f;
+  return {};
 }
 
 }  // namespace
@@ -136,8 +139,14 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
   if (std::find(found->compressions.begin(), found->compressions.end(), compression.name) == found->compressions.end())
     return Error{ErrorKind::usage,          fmt::format("unknown compression '{}'", compression.name), file.string(), 0,
                  join(found->compressions), nearest_name(compression.name, found->compressions)};
-  if (compression.level >= 0 && !takes_level(*found, compression.name))
+  if (compression.level < 0) return found;
+  const auto largest = largest_level(*found, compression.name);
+  if (!largest)
     return Error{ErrorKind::usage, fmt::format("compression '{}' takes no level", compression.name), file.string()};
+  if (compression.level > *largest)
+    return Error{ErrorKind::usage,
+                 fmt::format("compression '{}' has no level {:g}", compression.name, compression.level), file.string(),
+                 0, fmt::format("0 to {:g}", *largest)};
   return found;
 }
 

@@ -23,20 +23,26 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+Error wrong(const std::string& name, const std::string& why, std::string allowed = "") {
+  return {ErrorKind::usage, fmt::format("'{}' {}", tidy_message(name, 60), why), "", 0, std::move(allowed)};
+}
+
+Result<void> check_identifier(const std::string& name, const char* what) {
+  if (script::is_identifier(name)) return {};
+  return wrong(name, fmt::format("cannot be the name of {}", what), "1 to 64 letters, digits and '_', no digit first");
+}
+
 }  // namespace
 
+Result<void> check_new_look_name(const std::string& name) { return check_identifier(name, "a look"); }
+
 Result<void> check_new_effect_name(const std::string& name, const SearchPath& path) {
-  const auto wrong = [&](const std::string& why, std::string allowed = "") {
-    return Error{ErrorKind::usage, fmt::format("'{}' {}", tidy_message(name, 60), why), "", 0,
-                 std::move(allowed)};
-  };
-  if (!script::is_identifier(name))
-    return wrong("cannot be the name of an effect", "1 to 64 letters, digits and '_', no digit first");
-  if (holds(lua_words(), name)) return wrong("is a word of Lua; fx." + name + " could not be written");
-  if (holds(script::library_names(), name)) return wrong("is a name of the library: fx." + name);
-  if (name == "lib") return wrong("is the folder of shader libraries");
+  AFTERGLOW_CHECK(check_identifier(name, "an effect"));
+  if (holds(lua_words(), name)) return wrong(name, "is a word of Lua; fx." + name + " could not be written");
+  if (holds(script::library_names(), name)) return wrong(name, "is a name of the library: fx." + name);
+  if (name == "lib") return wrong(name, "is the folder of shader libraries");
   if (const auto hits = path.find_effect(name); !hits.empty())
-    return wrong(fmt::format("is an effect already: {}", hits.front().string()));
+    return wrong(name, fmt::format("is an effect already: {}", hits.front().string()));
   return {};
 }
 

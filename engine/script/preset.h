@@ -187,6 +187,8 @@ BuildContext usual_context(const Preset& preset, Size size, double frame, double
 
 /// May a new effect be called so? Errors (usage): no identifier, a word of Lua or of the library, taken.
 Result<void> check_new_effect_name(const std::string& name, const SearchPath& path);
+/// Errors (usage): a new look cannot be called so.
+Result<void> check_new_look_name(const std::string& name);
 
 /// Every effect on the search path, by name. Scripts that fail to load are warned about and left out.
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics);

@@ -72,6 +72,21 @@ TEST_F(New, IntoAnotherFolder) {
   EXPECT_EQ(run({"check", "mine/haze.lua"}).exit_code, kDone);
 }
 
+TEST_F(New, ALookRunsAndNothingIsWrongWithIt) {
+  const Outcome made = run({"new", "look", "dusk", "--in", "mine"});
+  ASSERT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_EQ(made.out, "mine/dusk.lua\nTry it:  afterglow run mine/dusk.lua PICTURE -o out.png\n");
+  const Outcome checked = run({"check", "mine/dusk.lua"});
+  EXPECT_EQ(checked.exit_code, kDone) << checked.err;
+  EXPECT_EQ(checked.err, "");
+  EXPECT_THAT(checked.out, Not(HasSubstr("note: ")));
+  EXPECT_THAT(checked.out, Not(HasSubstr("my_look")));
+  make_exr("in.exr");
+  EXPECT_EQ(run({"run", "mine/dusk.lua", "in.exr", "-o", "out.png"}).exit_code, kDone);
+  EXPECT_EQ(run({"new", "look", "dusk", "--in", "mine"}).exit_code, kFiles);
+  EXPECT_THAT(run({"new", "look", "../dusk"}).err, HasSubstr("cannot be the name of a look"));
+}
+
 TEST_F(New, Names) {
   const auto error = [&](const std::string& name) {
     const Outcome outcome = run({"new", "effect", name});
