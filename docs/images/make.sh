@@ -77,6 +77,8 @@ clipping="tools/clipping.py $program $alley $sea $hdri $photo --sheet docs/image
 
 Made by docs/images/make.sh. Each preset on the scene that shows it best; on the site a slider shows what went in. `afterglow run presets/NAME.lua PICTURE -o out.png` makes one.
 
+`anime_night`, `clean_product`, `dream_haze`, `golden_hour`, `neon_noir` and `shallow_focus` use depth, `ink_outline` depth and normals: channels of the picture, or `--depth FILE` and `--normal FILE`. Without them those entries are skipped, with a warning.
+
 INTRO
   for file in "${presets[@]}"; do
     name=$(basename "$file" .lua)
