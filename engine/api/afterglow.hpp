@@ -104,6 +104,14 @@ class Device {
   }
 #endif
 
+  Device(Device&&) noexcept = default;
+  /// The device before goes ahead of its sink, which it may still call.
+  Device& operator=(Device&& other) noexcept {
+    handle_ = std::move(other.handle_);
+    sink_ = std::move(other.sink_);
+    return *this;
+  }
+
   afterglow_device* get() const { return handle_.get(); }
   std::string describe() const {  ///< JSON
     return detail::text_from([this](afterglow_text** out) { return afterglow_device_describe(get(), out); });
@@ -186,6 +194,15 @@ class Stack {
     afterglow_stack* made = nullptr;
     check(afterglow_stack_create(device.get(), &given, &made));
     handle_.reset(made);
+  }
+
+  Stack(Stack&&) noexcept = default;
+  /// The stack before ends ahead of its callbacks, which its threads may still call.
+  Stack& operator=(Stack&& other) noexcept {
+    handle_ = std::move(other.handle_);
+    calls_ = std::move(other.calls_);
+    device_sink_ = std::move(other.device_sink_);
+    return *this;
   }
 
   afterglow_stack* get() const { return handle_.get(); }
