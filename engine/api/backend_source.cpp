@@ -3,25 +3,18 @@
 #include <mutex>
 
 #include "api/backend.h"
+#include "core/file_record.h"
 #include "session/live.h"
 
 namespace afterglow::api {
 namespace {
 
-/// Loaded in the caller's thread, whenever it asks.
+/// Loaded in the caller's thread, whenever it asks. Scripts and shaders are what they were when they were read first:
+/// only `reload` reads them again.
 class Loaded : public Source {
  public:
   Loaded(SharedDevice& device, const BackendOptions& options, Diagnostics& diagnostics)
       : device_(device), options_(options), diagnostics_(diagnostics) {}
-
-  Result<void> load(const StackOptions& wanted) {
-    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
-    later->use(*device_.device, !options_.commands);
-    if (stack_) later->take_over(*stack_, true);
-    stack_ = std::move(later);
-    options_.stack = wanted;
-    return {};
-  }
 
   Stack& stack() override { return *stack_; }
   Result<void> set(const std::vector<Override>& overrides) override {
@@ -33,11 +26,21 @@ class Loaded : public Source {
   Result<void> reload(const std::optional<std::string>& text) override {
     StackOptions wanted = options_.stack;
     if (text) wanted.preset.text = *text;
+    wanted.preset.record = FileRecord::keeping();
     return load(wanted);
   }
   Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override { return stack_->evaluate(shape.context); }
 
  private:
+  Result<void> load(const StackOptions& wanted) {
+    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
+    later->use(*device_.device, !options_.commands);
+    if (stack_) later->take_over(*stack_, true);
+    stack_ = std::move(later);
+    options_.stack = wanted;
+    return {};
+  }
+
   SharedDevice& device_;
   BackendOptions options_;
   Diagnostics& diagnostics_;
@@ -133,7 +136,7 @@ class Followed : public Source {
 Result<std::unique_ptr<Source>> load_source(SharedDevice& device, const BackendOptions& options,
                                             Diagnostics& diagnostics) {
   auto source = std::make_unique<Loaded>(device, options, diagnostics);
-  AFTERGLOW_CHECK(source->load(options.stack));
+  AFTERGLOW_CHECK(source->reload({}));
   return std::unique_ptr<Source>(std::move(source));
 }
 

@@ -72,6 +72,30 @@ TEST_F(ReloadTest, FilesAreReadAgainWhenAsked) {
   EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
 }
 
+TEST_F(ReloadTest, FilesAreReadWhenAskedAndNeverElse) {
+  write("parts.lua", "return { amount = 2 }\n");
+  const std::string preset =
+      "local fx, parts = require 'afterglow', require 'parts'\nreturn fx.stack { fx.gain { amount = parts.amount } }\n";
+  write("look.lua", preset);
+  const StackPtr stack = this->stack();
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+
+  // Edits that are not finished: a setting is set as if they were not there.
+  look("fx.gain { amount = ");
+  write("parts.lua", "return {");
+  write("effects/gain.lua", "return");
+  write("shaders/gain/gain.glsl", "vec4");
+  ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+  for (const char* name : {"look.lua", "parts.lua", "effects/gain.lua", "shaders/gain/gain.glsl"})
+    fs::remove(folder_ / name);
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 3)));
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.5f);
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+}
+
 TEST_F(ReloadTest, APresetMayBeAText) {
   afterglow_stack_options options = afterglow_stack_options_default();
   const std::string name = file("never_written.lua");
