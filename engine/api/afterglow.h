@@ -338,12 +338,14 @@ static inline afterglow_shape afterglow_shape_default(void) {
 /* Makes shaders, pipelines and memory for pictures of this shape, or only computes the parameters of this frame when
  * they are there. `frame` may be NULL. afterglow_stack_run does it by itself; hosts that record call it for each frame
  * whose number, time or settings differ. Nothing that was recorded from the stack may be in flight. One thread at a
- * time. Errors: usage, script, io (memory limit), device. */
+ * time. Errors: usage, script, io (memory limit), device. After an error what was prepared before stays, unless shaders
+ * or images could not be made: afterglow_stack_runs is false then. */
 AFTERGLOW_API afterglow_error *afterglow_stack_prepare(afterglow_stack *stack, const afterglow_shape *shape,
                                                        const afterglow_frame *frame);
 
 /* Whether there is anything to run for the frame that was prepared last. If not, the result is the source:
- * afterglow_stack_record records nothing then, and the caller copies. One thread at a time. */
+ * afterglow_stack_record records nothing then, and the caller copies. False where nothing is prepared: at first, and
+ * after a change that was taken (set, unset, update, reload). One thread at a time. */
 AFTERGLOW_API bool afterglow_stack_runs(const afterglow_stack *stack);
 
 /* What earlier frames handed on is forgotten. One thread at a time. */
@@ -352,8 +354,9 @@ AFTERGLOW_API void afterglow_stack_reset_history(afterglow_stack *stack);
 /* ---- live reload --------------------------------------------------------------------------------------------------*/
 
 /* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap
- * when there are none. An edit that is broken is returned as an error, once; the last good preset stays. Nothing that
- * was recorded from the stack may be in flight. One thread at a time. Errors: script, device. */
+ * when there are none. An edit that is broken is returned as an error, once; the last good preset stays, and what was
+ * prepared of it. Where good edits come before a broken one, the next call returns the error. Nothing that was recorded
+ * from the stack may be in flight. One thread at a time. Errors: script, device. */
 AFTERGLOW_API afterglow_error *afterglow_stack_update(afterglow_stack *stack, bool *changed);
 
 /* Reads the files now, or takes another text when `preset_text` is given (then not with `follow`), and takes the result

@@ -52,45 +52,67 @@ Result<void> Backend::unset(const std::string& name) {
 }
 
 Result<void> Backend::set_all(std::vector<Override> all) {
-  AFTERGLOW_CHECK(source_->set(all));
-  overrides_ = std::move(all);
-  forget();
-  return {};
+  const Stack* before = &source_->stack();
+  const auto done = source_->set(all);
+  forget_what_went(before);
+  if (done) overrides_ = std::move(all);
+  return done;
 }
 
 Result<bool> Backend::update() {
+  const Stack* before = &source_->stack();
   auto changed = source_->update();
-  if (!changed || *changed) forget();
+  forget_what_went(before);
   return changed;
 }
 
 Result<void> Backend::reload(const std::optional<std::string>& text) {
-  forget();
-  return source_->reload(text);
+  const Stack* before = &source_->stack();
+  auto done = source_->reload(text);
+  forget_what_went(before);
+  return done;
 }
 
-/// What was prepared may be of a stack that is no more.
-void Backend::forget() {
+/// What was prepared goes with its stack (`before`, which may be no more) or its program; a failure alone leaves it.
+void Backend::forget_what_went(const Stack* before) {
+  Stack& now = source_->stack();
+  if (&now == before && now.programs()->work()) return;
   prepared_ = false;
   build_.reset();
   last_ = {};
 }
 
 Result<void> Backend::prepare(const Shape& shape) {
-  forget();
-  AFTERGLOW_TRY(build_, source_->evaluate(shape));
-  AFTERGLOW_CHECK(source_->stack().prepare(request_for(build_, shape.encoding, shape.region)));
-  skipped_ = source_->stack().skipped();
+  const Stack* before = &source_->stack();
+  auto done = prepare_frame(shape);
+  if (!done) forget_what_went(before);
+  return done;
+}
+
+Result<void> Backend::prepare_frame(const Shape& shape) {
+  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
+  Stack& stack = source_->stack();
+  AFTERGLOW_CHECK(stack.prepare(request_for(build, shape.encoding, shape.region)));
   prepared_ = true;
+  build_ = std::move(build);
+  skipped_ = stack.skipped();
+  last_ = {};
   return {};
 }
 
 Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result) {
-  forget();
+  const Stack* before = &source_->stack();
+  auto done = run_frame(shape, inputs, result);
+  if (!done) forget_what_went(before);
+  return done;
+}
+
+Result<void> Backend::run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs,
+                                HostResult& result) {
   clamped_ = 0;
-  AFTERGLOW_TRY(build_, source_->evaluate(shape));
+  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
   Stack& stack = source_->stack();
-  AFTERGLOW_TRY(RenderRequest request, stack.request(request_for(build_, shape.encoding, shape.region)));
+  AFTERGLOW_TRY(RenderRequest request, stack.request(request_for(build, shape.encoding, shape.region)));
   const bool runs = request.work.runs();
   if (!runs) {
     AFTERGLOW_CHECK(stack.programs()->prepare(std::move(request.work), stack.shaders()));
@@ -100,9 +122,10 @@ Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostIm
   if (runs && options_.time_kernels)
     request.timing = device_->device->timestamps_mean_draws() ? KernelTiming::timestamps : KernelTiming::submissions;
   AFTERGLOW_TRY(last_, renderer_->render(std::move(request), result));
+  prepared_ = true;
+  build_ = std::move(build);
   skipped_ = stack.skipped();
   clamped_ = result.clamped;
-  prepared_ = true;
   return {};
 }
 

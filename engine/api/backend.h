@@ -116,7 +116,9 @@ class Backend {
  private:
   Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
   Result<void> set_all(std::vector<Override> all);
-  void forget();
+  void forget_what_went(const Stack* before);
+  Result<void> prepare_frame(const Shape& shape);
+  Result<void> run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result);
   std::shared_ptr<SharedDevice> device_;  // last to go
   BackendOptions options_;
   Diagnostics diagnostics_;

@@ -76,14 +76,16 @@ class Followed : public Source {
   }
 
   Result<bool> update() override {
-    const bool changed = live_->update();
-    if (changed) tell_warnings();
+    if (live_->update()) {
+      tell_warnings();
+      return true;  // what is wrong with a later edit is said the next time
+    }
     const LiveStatus status = live_->status();
     const std::string text = status.error ? status.error->text() : "";
-    if (text == told_error_) return changed;
+    if (text == told_error_) return false;
     told_error_ = text;
     if (status.error) return *status.error;
-    return changed;
+    return false;
   }
 
   Result<void> reload(const std::optional<std::string>&) override {

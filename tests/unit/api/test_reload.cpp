@@ -138,6 +138,7 @@ TEST_F(ReloadTest, EditsOfAFollowedFileAreTakenByUpdate) {
   const ErrorPtr error = update(stack, waker);
   EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_SCRIPT);
   EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
   EXPECT_TRUE(fine(afterglow_stack_update(stack.get(), nullptr)));
   EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
 
