@@ -41,19 +41,19 @@ Result<void> Backend::set(const Override& one) {
   std::vector<Override> all = overrides_;
   std::erase_if(all, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
   all.push_back(one);
-  return set_all(std::move(all));
+  return set_all(std::move(all), MustFit::last_override);
 }
 
 Result<void> Backend::unset(const std::string& name) {
   std::vector<Override> all = overrides_;
   std::erase_if(all, [&](const Override& o) { return name.empty() || o.entry + "." + o.setting == name; });
   if (all.size() == overrides_.size()) return {};
-  return set_all(std::move(all));
+  return set_all(std::move(all), MustFit::nothing);
 }
 
-Result<void> Backend::set_all(std::vector<Override> all) {
+Result<void> Backend::set_all(std::vector<Override> all, MustFit must_fit) {
   const Stack* before = &source_->stack();
-  const auto done = source_->set(all);
+  const auto done = source_->set(all, must_fit);
   forget_what_went(before);
   if (done) overrides_ = std::move(all);
   return done;

@@ -56,8 +56,9 @@ class Source {
  public:
   virtual ~Source() = default;
   virtual Stack& stack() = 0;  ///< the last good one
-  /// All of them. When there is an error the ones before stay.
-  virtual Result<void> set(const std::vector<Override>& overrides) = 0;
+  /// All of them; those that do not fit are left out with a warning, unless they must. When there is an error the ones
+  /// before stay.
+  virtual Result<void> set(const std::vector<Override>& overrides, MustFit must_fit) = 0;
   virtual Result<bool> update() = 0;
   virtual Result<void> reload(const std::optional<std::string>& text) = 0;
   /// What the preset says about the frame; edits that have to be waited for are taken first.
@@ -115,7 +116,7 @@ class Backend {
 
  private:
   Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
-  Result<void> set_all(std::vector<Override> all);
+  Result<void> set_all(std::vector<Override> all, MustFit must_fit);
   void forget_what_went(const Stack* before);
   Result<void> prepare_frame(const Shape& shape);
   Result<void> run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result);

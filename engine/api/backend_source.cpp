@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where stacks come from.
+#include <algorithm>
 #include <mutex>
 
 #include "api/backend.h"
@@ -17,9 +18,10 @@ class Loaded : public Source {
       : device_(device), options_(options), diagnostics_(diagnostics) {}
 
   Stack& stack() override { return *stack_; }
-  Result<void> set(const std::vector<Override>& overrides) override {
+  Result<void> set(const std::vector<Override>& overrides, MustFit must_fit) override {
     StackOptions wanted = options_.stack;
     wanted.preset.overrides = overrides;
+    wanted.preset.must_fit = must_fit;
     return load(wanted);
   }
   Result<bool> update() override { return false; }
@@ -38,6 +40,8 @@ class Loaded : public Source {
     if (stack_) later->take_over(*stack_, true);
     stack_ = std::move(later);
     options_.stack = wanted;
+    options_.stack.preset.leave_out_unfit = true;  // the preset may come to be another one
+    options_.stack.preset.must_fit = MustFit::nothing;
     return {};
   }
 
@@ -65,10 +69,12 @@ class Followed : public Source {
 
   Stack& stack() override { return *live_->stack(); }
 
-  Result<void> set(const std::vector<Override>& overrides) override {
-    // Tried here first, since a LiveStack leaves out what does not fit.
+  Result<void> set(const std::vector<Override>& overrides, MustFit must_fit) override {
+    // Tried here first, since a LiveStack leaves out all that does not fit.
     PresetOptions wanted = options_.stack.preset;
     wanted.overrides = overrides;
+    wanted.leave_out_unfit = true;
+    wanted.must_fit = must_fit;
     ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
     AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
     live_->set_overrides(overrides);
@@ -120,8 +126,12 @@ class Followed : public Source {
     const LiveStatus status = live_->status();
     return status.error ? *status.error : Error{ErrorKind::script, "the preset cannot be loaded"};
   }
+  /// Those that were not told of the stack before.
   void tell_warnings() {
-    for (const auto& warning : live_->status().warnings) diagnostics_.warn(warning);
+    std::vector<std::string> warnings = live_->status().warnings;
+    for (const auto& warning : warnings)
+      if (std::ranges::find(told_, warning) == told_.end()) diagnostics_.warn(warning);
+    told_ = std::move(warnings);
   }
 
   BackendOptions options_;
@@ -130,6 +140,7 @@ class Followed : public Source {
   std::unique_ptr<LiveStack> live_;
   std::optional<BuildContext> context_;
   std::optional<DisplayEncoding> encoding_;
+  std::vector<std::string> told_;
   std::string told_error_;
 };
 

@@ -96,6 +96,35 @@ TEST_F(ReloadTest, FilesAreReadWhenAskedAndNeverElse) {
   EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
 }
 
+TEST_F(ReloadTest, WhatThePresetNoLongerHasIsLeftOut) {
+  for (const bool follow : {false, true}) {
+    look("fx.gain { amount = 2 }, fx.trim {}");
+    write(
+        "effects/trim.lua",
+        "local fx = require 'afterglow'\nreturn fx.effect { name = 'trim', doc = '.', at = 'post_process', order = 1,\n"
+        "settings = { by = fx.float { default = 1, min = 0, max = 9, doc = '.' } },\n"
+        "build = function(g, s, source) return g:pass { shader = 'gain/gain', source = source, amount = s.by, tint = "
+        "{ 1, 1, 1 } } end }\n");
+    afterglow_stack_options options = listening();
+    messages_.clear();
+    options.follow = follow;
+    const StackPtr stack = this->stack(options);
+    ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("trim.by"), 2)));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+    look("fx.gain { amount = 2 }");
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+    for (const double amount : {3.0, 4.0, 5.0})
+      ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), amount)));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.5f);
+    EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("the stack has no entry 'trim'")));
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_set_number(stack.get(), str("trim.by"), 3)));
+    look("fx.gain { amount = 2 }, fx.trim {}");
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
+  }
+}
+
 TEST_F(ReloadTest, APresetMayBeAText) {
   afterglow_stack_options options = afterglow_stack_options_default();
   const std::string name = file("never_written.lua");
