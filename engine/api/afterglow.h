@@ -245,7 +245,8 @@ AFTERGLOW_API afterglow_error *afterglow_stack_get_numbers(const afterglow_stack
 /* ---- frames -------------------------------------------------------------------------------------------------------*/
 
 /* Where a picture stands in its sequence. Effects that look back go on from the frame before when its number is `step`
- * smaller than this one's; else, or with `restart`, they begin anew. */
+ * smaller than this one's; else, or with `restart`, they begin anew. All numbers are finite, `fps` and `step` above 0;
+ * others are usage errors. */
 typedef struct afterglow_frame {
   size_t struct_size;
   double number, time; /* time in seconds */

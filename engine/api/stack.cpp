@@ -2,6 +2,8 @@
 // Stacks of the C interface: made, run, reloaded, asked.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "api/documents.h"
 #include "api/handles.h"
 #include "core/paths.h"
@@ -13,11 +15,33 @@ Result<Backend*> backend_of(const afterglow_stack* stack, const char* function) 
   return stack->backend.get();
 }
 
+namespace {
+
+/// Errors (usage): numbers that no frame has.
+Result<void> check_frame(const afterglow_frame& frame) {
+  const auto check = [](const char* name, double value, bool positive) -> Result<void> {
+    if (std::isfinite(value) && (!positive || value > 0)) return {};
+    Error error = usage(fmt::format("afterglow_frame: {} is {:g}", name, value));
+    error.allowed = positive ? "finite numbers above 0" : "finite numbers";
+    return error;
+  };
+  AFTERGLOW_CHECK(check("number", frame.number, false));
+  AFTERGLOW_CHECK(check("time", frame.time, false));
+  AFTERGLOW_CHECK(check("fps", frame.fps, true));
+  AFTERGLOW_CHECK(check("step", frame.step, true));
+  if (frame.has_position)
+    for (const double coordinate : frame.position) AFTERGLOW_CHECK(check("position", coordinate, false));
+  return {};
+}
+
+}  // namespace
+
 Result<BuildContext> context_of(const afterglow_frame* given, Size size) {
   afterglow_frame frame = afterglow_frame_default();
   if (given) {
     AFTERGLOW_TRY(frame, take(given, frame, "afterglow_frame"));
   }
+  AFTERGLOW_CHECK(check_frame(frame));
   BuildContext context;
   context.size = size;
   context.frame = frame.number;
