@@ -204,7 +204,8 @@ AFTERGLOW_API afterglow_error *afterglow_stack_create(afterglow_device *device, 
 AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
 
 /* ---- settings -----------------------------------------------------------------------------------------------------
- * A setting is named "ENTRY.SETTING", as in "glow.intensity". A value that was set stays over reloads, and stands
+ * A setting is named "ENTRY.SETTING", as in "glow.intensity". What every entry has goes by such names too: "glow.enabled",
+ * "at", "order", "opacity", "blend", "mask" (a number) and the settings of its mask ("glow.mask.luma.from"). A value that was set stays over reloads, and stands
  * above what the preset says, also over curves and volumes. Where the preset has come to have no such setting, it is left
  * out with a message, and counts again when there is one. Where nothing is followed, scripts, shaders and tables that
  * were read are not read again: only afterglow_stack_reload does that. One thread at a time, for all functions below. */
@@ -231,7 +232,8 @@ AFTERGLOW_API afterglow_error *afterglow_stack_set_numbers(afterglow_stack *stac
 /* Back to what the preset says. A name that was not set is no error; a name that is not given means all. */
 AFTERGLOW_API afterglow_error *afterglow_stack_unset(afterglow_stack *stack, afterglow_string name);
 
-/* Values as they are in the frame that was prepared or run last. Errors: usage (unknown name, another type). */
+/* Values as they are in the frame that was prepared or run last. A mask that is no number is a text: "luma * (1 -
+ * radial)". Errors: usage (unknown name, another type). */
 AFTERGLOW_API afterglow_error *afterglow_stack_get_number(const afterglow_stack *stack, afterglow_string name,
                                                           double *out);
 AFTERGLOW_API afterglow_error *afterglow_stack_get_boolean(const afterglow_stack *stack, afterglow_string name,

@@ -128,6 +128,8 @@ def test_settings(stack):
     stack.set("gain.tint", "#ffffff")
     stack.set("gain.amount", np.float32(5))
     np.testing.assert_array_equal(stack.run(one), 5 * one)
+    stack.set("gain.opacity", 0.5)
+    assert [stack.get("gain." + name) for name in ("opacity", "blend", "mask", "enabled")] == [0.5, "normal", 1, True]
     stack.unset()
     np.testing.assert_array_equal(stack.run(one), 2 * one)
     [entry] = stack.settings

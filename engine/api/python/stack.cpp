@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <set>
+#include <variant>
 
 namespace afterglow::python {
 namespace {
@@ -228,9 +229,27 @@ py::object PyStack::get(const std::string& name) const {
     for (const auto& one : entry["settings"])
       if (one["name"].cast<std::string>() == setting) return one["value"];
   }
-  double none = 0;
-  alone([&] { check(afterglow_stack_get_number(stack_->get(), to_view(name), &none)); });  // says what there is
-  return py::none();
+  return get_plainly(name);
+}
+
+/// What is no setting of an effect ("glow.opacity", "glow.mask.luma.from"), of whatever type.
+py::object PyStack::get_plainly(const std::string& name) const {
+  using Value = std::variant<bool, double, std::vector<double>, std::string>;
+  const auto is_so = [](afterglow_error* error) {
+    afterglow_error_free(error);
+    return !error;
+  };
+  return py::cast(alone([&]() -> Value {
+    bool on = false;
+    if (is_so(afterglow_stack_get_boolean(stack_->get(), to_view(name), &on))) return on;
+    std::vector<double> numbers(4);
+    std::size_t count = 0;
+    if (!is_so(afterglow_stack_get_numbers(stack_->get(), to_view(name), numbers.data(), numbers.size(), &count)))
+      return stack_->get_text(name);  // or its error, which says what there is
+    numbers.resize(count);
+    if (count == 1) return numbers[0];
+    return numbers;
+  }));
 }
 
 py::object PyStack::settings() const { return json(&Stack::settings); }

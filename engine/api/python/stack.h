@@ -44,6 +44,7 @@ class PyStack {
  private:
   template <class Work>
   auto alone(Work work) const;
+  py::object get_plainly(const std::string& name) const;
   py::object json(std::string (Stack::*function)() const) const;
 
   std::shared_ptr<PyDevice> device_;

@@ -89,6 +89,44 @@ TEST_F(SettingsTest, EveryTypeGoesInAndOut) {
   EXPECT_FALSE(off);
 }
 
+TEST_F(SettingsTest, WhatEveryEntryHasGoesInAndOut) {
+  const auto number = [&](const char* name) {
+    double out = -1;
+    EXPECT_TRUE(fine(afterglow_stack_get_number(stack_.get(), str(name), &out)));
+    return out;
+  };
+  const auto text = [&](const char* name) {
+    afterglow_text* out = nullptr;
+    EXPECT_TRUE(fine(afterglow_stack_get_text(stack_.get(), str(name), &out)));
+    const std::string copy = str(afterglow_text_get(out));
+    afterglow_text_free(out);
+    return copy;
+  };
+  EXPECT_EQ(number("gain.opacity"), 1);
+  EXPECT_EQ(number("gain.order"), 10);
+  EXPECT_EQ(number("gain.mask"), 1);
+  EXPECT_EQ(text("gain.blend"), "normal");
+  EXPECT_EQ(text("gain.at"), "post_process");
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.opacity"), 0.5)));
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.mask"), 0.25)));
+  ASSERT_TRUE(fine(afterglow_stack_set_text(stack_.get(), str("gain.blend"), str("add"))));
+  EXPECT_EQ(number("gain.opacity"), 0.5);
+  EXPECT_EQ(number("gain.mask"), 0.25);
+  EXPECT_EQ(text("gain.blend"), "add");
+
+  look("fx.gain { amount = 2, mask = fx.mask.luma { from = 0.25 } }");
+  stack_ = stack();
+  EXPECT_EQ(number("gain.mask.luma.from"), 0.25);
+  EXPECT_EQ(text("gain.mask"), "luma");
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.mask.luma.from"), 0.5)));
+  EXPECT_EQ(number("gain.mask.luma.from"), 0.5);
+  double out = 0;
+  const ErrorPtr mask(afterglow_stack_get_number(stack_.get(), str("gain.mask"), &out));
+  EXPECT_THAT(text_of(mask.get()), HasSubstr("'gain.mask' is no number"));
+  const ErrorPtr near(afterglow_stack_get_number(stack_.get(), str("gain.opactiy"), &out));
+  EXPECT_EQ(str(afterglow_error_get_nearest(near.get())), "opacity");
+}
+
 TEST_F(SettingsTest, WhatIsNotAllowedIsRefusedAndChangesNothing) {
   ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
   const ErrorPtr name(afterglow_stack_set_number(stack_.get(), str("gain.amonut"), 1));
