@@ -229,7 +229,8 @@ AFTERGLOW_API afterglow_error *afterglow_stack_set_text(afterglow_stack *stack, 
                                                         afterglow_string value);
 AFTERGLOW_API afterglow_error *afterglow_stack_set_numbers(afterglow_stack *stack, afterglow_string name,
                                                            const double *values, size_t count);
-/* Back to what the preset says. A name that was not set is no error; a name that is not given means all. */
+/* Back to what the preset says. A name that was not set is no error; a name that is not given means all. Errors:
+ * usage (an empty name), script. */
 AFTERGLOW_API afterglow_error *afterglow_stack_unset(afterglow_stack *stack, afterglow_string name);
 
 /* Values as they are in the frame that was prepared or run last. A mask that is no number is a text: "luma * (1 -

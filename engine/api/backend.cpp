@@ -44,9 +44,9 @@ Result<void> Backend::set(const Override& one) {
   return set_all(std::move(all), MustFit::last_override);
 }
 
-Result<void> Backend::unset(const std::string& name) {
+Result<void> Backend::unset(const std::optional<std::string>& name) {
   std::vector<Override> all = overrides_;
-  std::erase_if(all, [&](const Override& o) { return name.empty() || o.entry + "." + o.setting == name; });
+  std::erase_if(all, [&](const Override& o) { return !name || o.entry + "." + o.setting == *name; });
   if (all.size() == overrides_.size()) return {};
   return set_all(std::move(all), MustFit::nothing);
 }

@@ -96,7 +96,7 @@ class Backend {
 
   /// One more override; one of the same name goes. Errors: usage, script: then the ones before stay.
   Result<void> set(const Override& one);
-  Result<void> unset(const std::string& name);
+  Result<void> unset(const std::optional<std::string>& name);  ///< none: all
   Result<bool> update();
   Result<void> reload(const std::optional<std::string>& text);
 

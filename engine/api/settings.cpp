@@ -142,6 +142,8 @@ afterglow_error* afterglow_stack_set_numbers(afterglow_stack* stack, afterglow_s
 afterglow_error* afterglow_stack_unset(afterglow_stack* stack, afterglow_string name) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_unset"));
+    if (!is_given(name)) return backend->unset({});
+    if (name.size == 0) return usage("afterglow_stack_unset: the name is empty; NULL means all settings");
     return backend->unset(text_of(name));
   });
 }

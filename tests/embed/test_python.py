@@ -130,6 +130,9 @@ def test_settings(stack):
     np.testing.assert_array_equal(stack.run(one), 5 * one)
     stack.set("gain.opacity", 0.5)
     assert [stack.get("gain." + name) for name in ("opacity", "blend", "mask", "enabled")] == [0.5, "normal", 1, True]
+    with pytest.raises(afterglow.UsageError, match="empty"):
+        stack.unset("")
+    assert stack.get("gain.opacity") == 0.5
     stack.unset()
     np.testing.assert_array_equal(stack.run(one), 2 * one)
     [entry] = stack.settings

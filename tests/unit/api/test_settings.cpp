@@ -89,6 +89,17 @@ TEST_F(SettingsTest, EveryTypeGoesInAndOut) {
   EXPECT_FALSE(off);
 }
 
+TEST_F(SettingsTest, AnEmptyNameIsNotAll) {
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
+  const ErrorPtr error(afterglow_stack_unset(stack_.get(), str("")));
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_FLOAT_EQ(first_sample(), 1.5f);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), str("gain.tint"))));  // which was not set
+  EXPECT_FLOAT_EQ(first_sample(), 1.5f);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(), 1.0f);
+}
+
 TEST_F(SettingsTest, WhatEveryEntryHasGoesInAndOut) {
   const auto number = [&](const char* name) {
     double out = -1;
