@@ -204,11 +204,12 @@ AFTERGLOW_API afterglow_error *afterglow_stack_create(afterglow_device *device, 
 AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
 
 /* ---- settings -----------------------------------------------------------------------------------------------------
- * A setting is named "ENTRY.SETTING", as in "glow.intensity". What every entry has goes by such names too: "glow.enabled",
- * "at", "order", "opacity", "blend", "mask" (a number) and the settings of its mask ("glow.mask.luma.from"). A value that was set stays over reloads, and stands
- * above what the preset says, also over curves and volumes. Where the preset has come to have no such setting, it is left
- * out with a message, and counts again when there is one. Where nothing is followed, scripts, shaders and tables that
- * were read are not read again: only afterglow_stack_reload does that. One thread at a time, for all functions below. */
+ * A setting is named "ENTRY.SETTING", as in "glow.intensity". What every entry has goes by such names too:
+ * "glow.enabled", "at", "order", "opacity", "blend", "mask" (a number) and the settings of its mask
+ * ("glow.mask.luma.from"). A value that was set stays over reloads, and stands above what the preset says, also over
+ * curves and volumes. Where the preset has come to have no such setting, it is left out with a message, and counts
+ * again when there is one. Where nothing is followed, scripts, shaders and tables that were read are not read again:
+ * only afterglow_stack_reload does that. One thread at a time, for all functions below. */
 
 /* The entries in the order of execution with their settings, as JSON:
  *   [{"name", "effect", "at", "order", "enabled", "file", "line",
@@ -284,9 +285,9 @@ typedef enum afterglow_samples {
 
 /* Pixels of the caller. Channels lie next to each other. */
 typedef struct afterglow_image {
-  void *data; /* the upper left pixel; NULL: no image. Sources are only read */
-  int32_t width, height;
-  int32_t channels; /* colour: 3 (alpha is 1) or 4; depth 1, normal 3, motion 2 */
+  void *data;            /* the upper left pixel; NULL: no image. Sources are only read */
+  int32_t width, height; /* 1 to 16384 */
+  int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3, motion 2 */
   afterglow_samples samples;
   ptrdiff_t row_stride;   /* bytes from one row to the next, may be negative; 0: rows without gaps */
   ptrdiff_t pixel_stride; /* bytes from one pixel to the next; 0: pixels without gaps */
@@ -325,7 +326,7 @@ AFTERGLOW_API afterglow_error *afterglow_stack_run(afterglow_stack *stack, const
 
 typedef struct afterglow_shape {
   size_t struct_size;
-  int32_t width, height;      /* of the source */
+  int32_t width, height;      /* of the source; 1 to 16384 */
   bool depth, normal, motion; /* what comes with it */
   bool display_codes;         /* the result will be 8-bit: sRGB codes */
   bool straight_alpha;        /* with `display_codes`: colours are divided by the source's alpha, which is stored */
@@ -371,9 +372,9 @@ AFTERGLOW_API afterglow_error *afterglow_stack_reload(afterglow_stack *stack, af
 /* ---- what happened ------------------------------------------------------------------------------------------------*/
 
 /* How the settings of the last frame came about, as JSON: {"name", "position", "volumes": […], "entries": [{"name",
- * "effect", "state", "reason", "opacity", "blend", "mask", "composition": […], "settings": [{"name", "default", "preset",
- * "volumes", "override", "final"}]}]}. "composition" is of opacity, blend and mask what "settings" is of the others;
- * "mask" is missing where there is none. One thread at a time. */
+ * "effect", "state", "reason", "opacity", "blend", "mask", "composition": […], "settings": [{"name", "default",
+ * "preset", "volumes", "override", "final"}]}]}. "composition" is of opacity, blend and mask what "settings" is of the
+ * others; "mask" is missing where there is none. One thread at a time. */
 AFTERGLOW_API afterglow_error *afterglow_stack_explain(const afterglow_stack *stack, afterglow_text **out);
 
 /* What ran in the last frame, as JSON: {"preset", "device", "choice", "choice_from", "max_error", "kernels", "skipped":

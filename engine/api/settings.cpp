@@ -15,20 +15,17 @@ namespace {
 /// "ENTRY.SETTING" and the text of a value. Errors: usage.
 Result<Override> override_of(afterglow_string name, const std::string& value) {
   const std::string full = text_of(name);
-  if (full.find('=') != std::string::npos) return usage(fmt::format("a setting cannot be named '{}'", full));
+  const std::size_t dot = full.find('.');
+  const bool has_both = dot != std::string::npos && dot > 0 && dot + 1 < full.size();
+  if (!has_both || full.find('=') != std::string::npos)
+    return Error{ErrorKind::usage, fmt::format("'{}' is no name of a setting", full), "", 0, "ENTRY.SETTING"};
   return parse_override(full + "=" + value);
 }
 
 Result<void> set(afterglow_stack* stack, const char* function, afterglow_string name, const std::string& value) {
   AFTERGLOW_TRY(Backend * backend, backend_of(stack, function));
   AFTERGLOW_TRY(const Override one, override_of(name, value));
-  auto done = backend->set(one);
-  if (done) return done;
-  // The engine speaks to users of the command line.
-  Error error = std::move(done).error();
-  constexpr std::string_view kOption = "--set ";
-  if (error.message.starts_with(kOption)) error.message.erase(0, kOption.size());
-  return error;
+  return backend->set(one);
 }
 
 Result<std::string> number(double value) {

@@ -193,8 +193,7 @@ afterglow_error* afterglow_stack_prepare(afterglow_stack* stack, const afterglow
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_prepare"));
     AFTERGLOW_TRY(const auto given, take(shape, afterglow_shape_default(), "afterglow_shape"));
     const Size size{given.width, given.height};
-    if (size.width < 1 || size.height < 1)
-      return usage(fmt::format("afterglow_shape: {}×{} pixels; sides start at 1", size.width, size.height));
+    if (auto fits = check_size(size); !fits) return usage("afterglow_shape: " + fits.error().message);
     Shape wanted;
     AFTERGLOW_TRY(wanted.context, context_of(frame, size));
     AFTERGLOW_TRY(wanted.region, region_of(given.region, size));

@@ -124,6 +124,8 @@ def test_settings(stack):
     np.testing.assert_array_equal(stack.run(one)[0, 0], (3, 1.5, 0.75))
     stack.set("gain.off", True)
     np.testing.assert_array_equal(stack.run(one), one)
+    stack.set("gain.off", np.bool_(False))
+    np.testing.assert_array_equal(stack.run(one)[0, 0], (3, 1.5, 0.75))
     stack.unset("gain.off")
     stack.set("gain.tint", "#ffffff")
     stack.set("gain.amount", np.float32(5))
@@ -174,6 +176,19 @@ def test_wrong_arguments(stack):
         out = picture()
         out.flags.writeable = False
         stack.run(picture(), out=out)
+    for call, told in (
+        (lambda: afterglow.Stack("neon_night", device="auto"), "device must be an afterglow.Device, not str"),
+        (lambda: afterglow.Stack("neon_night", max_error="small"), "max_error must be a number, not str"),
+        (lambda: afterglow.Stack("neon_night", follow="no"), "follow must be a bool, not str"),
+        (lambda: afterglow.Stack("neon_night", text=3), "text must be a str, not int"),
+        (lambda: stack.run(picture(), frame=[1]), "frame must be a number, not list"),
+        (lambda: stack.run(picture(), position=1), r"position must be \(x, y, z\), not int"),
+        (lambda: stack.run(picture(), region=(1, 2)), "region must be .*, not tuple"),
+        (lambda: stack.set("gain.amount", {}), "gain.amount must be a bool, a number, a str or some numbers, not dict"),
+        (lambda: stack.set("gain.amount", None), "not NoneType"),
+    ):
+        with pytest.raises(TypeError, match=told):
+            call()
     with pytest.raises(ValueError, match="allowed: auto, fp32, fp16"):
         afterglow.Stack("neon_night", precision="double")
 

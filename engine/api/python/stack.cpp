@@ -4,12 +4,28 @@
 #include <pybind11/stl.h>
 
 #include <set>
+#include <type_traits>
 #include <variant>
 
 namespace afterglow::python {
 namespace {
 
 py::object from_json(const std::string& text) { return py::module_::import("json").attr("loads")(text); }
+
+/// What Python calls a wrong type, it does: pybind11 makes a RuntimeError of it.
+template <class T>
+T cast(const py::object& value, const std::string& name, const char* what) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(name + " must be " + what + ", not " +
+                         py::type::of(value).attr("__name__").cast<std::string>());
+  }
+}
+template <class T>
+constexpr const char* kWhat = std::is_same_v<T, bool>   ? "a bool"
+                              : std::is_arithmetic_v<T> ? "a number"
+                                                        : "a str";
 
 /// Options by name, each asked for once; what nobody asked for is unknown.
 class Options {
@@ -23,7 +39,7 @@ class Options {
   template <class T>
   T take(const char* name, T otherwise) {
     const py::object value = take(name);
-    return value.is_none() ? otherwise : value.cast<T>();
+    return value.is_none() ? otherwise : cast<T>(value, name, kWhat<T>);
   }
   void finish() const {
     for (const auto& [key, value] : given_)
@@ -88,7 +104,7 @@ std::string path_text(const py::handle& path) {
 
 afterglow_rect region_of(const py::object& region) {
   if (region.is_none()) return {0, 0, 0, 0};
-  const auto [x, y, width, height] = region.cast<std::tuple<int, int, int, int>>();
+  const auto [x, y, width, height] = cast<std::tuple<int, int, int, int>>(region, "region", "(x, y, width, height)");
   if (width < 1 || height < 1) throw py::value_error("region is (x, y, width, height); sides start at 1");
   return {x, y, width, height};
 }
@@ -139,7 +155,7 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   wanted.wake = wake_of(options.take("wake"));
   options.finish();
   device_ = device.is_none() ? std::make_shared<PyDevice>("auto", false, std::nullopt, py::none())
-                             : device.cast<std::shared_ptr<PyDevice>>();
+                             : cast<std::shared_ptr<PyDevice>>(device, "device", "an afterglow.Device");
   const std::string file = preset.is_none() ? "" : path_text(preset);
   const py::gil_scoped_release others;
   stack_ = std::make_unique<Stack>(device_->get(), file, std::move(wanted));
@@ -188,7 +204,7 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   frame.step = options.take("step", frame.step);
   frame.restart = options.take("restart", false);
   if (const py::object position = options.take("position"); !position.is_none()) {
-    const auto [x, y, z] = position.cast<std::tuple<double, double, double>>();
+    const auto [x, y, z] = cast<std::tuple<double, double, double>>(position, "position", "(x, y, z)");
     frame.has_position = true;
     frame.position[0] = x, frame.position[1] = y, frame.position[2] = z;
   }
@@ -201,7 +217,7 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
 }
 
 void PyStack::set(const std::string& name, const py::object& value) {
-  if (py::isinstance<py::bool_>(value)) {
+  if (py::isinstance<py::bool_>(value) || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) {
     const bool on = value.cast<bool>();
     return alone([&] { stack_->set(name, on); });
   }
@@ -210,10 +226,10 @@ void PyStack::set(const std::string& name, const py::object& value) {
     return alone([&] { check(afterglow_stack_set(stack_->get(), to_view(name), to_view(text))); });
   }
   if (PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr())) {
-    const auto number = value.cast<double>();
+    const auto number = cast<double>(value, name, "a number");
     return alone([&] { stack_->set(name, number); });
   }
-  const auto numbers = value.cast<std::vector<double>>();
+  const auto numbers = cast<std::vector<double>>(value, name, "a bool, a number, a str or some numbers");
   alone([&] { stack_->set(name, numbers); });
 }
 
