@@ -186,6 +186,9 @@ typedef struct afterglow_stack_options {
   afterglow_message_callback message;
   afterglow_wake_callback wake; /* only with `follow` */
   void *user;                   /* for both callbacks */
+  /* Values of what the preset declares by fx.args: "NAME=VALUE" each, as for `afterglow --arg`. */
+  const afterglow_string *arguments;
+  size_t argument_count;
 } afterglow_stack_options;
 
 static inline afterglow_stack_options afterglow_stack_options_default(void) {
@@ -233,6 +236,15 @@ AFTERGLOW_API afterglow_error *afterglow_stack_set_numbers(afterglow_stack *stac
 /* Back to what the preset says. A name that was not set is no error; a name that is not given means all. Errors:
  * usage (an empty name), script. */
 AFTERGLOW_API afterglow_error *afterglow_stack_unset(afterglow_stack *stack, afterglow_string name);
+
+/* What the preset declares by fx.args, as JSON: settings as above, and "given" where a value was. */
+AFTERGLOW_API afterglow_error *afterglow_stack_arguments(const afterglow_stack *stack, afterglow_text **out);
+
+/* Gives one of them a value, from the text that `afterglow --arg NAME=VALUE` takes; a value that is not given means its
+ * default. The preset runs again, which may change everything but what was set. Stays over reloads as settings do.
+ * Errors: usage (unknown name, value that is not allowed), script. */
+AFTERGLOW_API afterglow_error *afterglow_stack_set_argument(afterglow_stack *stack, afterglow_string name,
+                                                            afterglow_string value);
 
 /* Values as they are in the frame that was prepared or run last. A mask that is no number is a text: "luma * (1 -
  * radial)". Errors: usage (unknown name, another type). */

@@ -23,7 +23,10 @@ void SharedDevice::share(const std::filesystem::path& cache_folder) {
 }
 
 Backend::Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options)
-    : device_(std::move(device)), options_(options), diagnostics_(options.message) {}
+    : device_(std::move(device)),
+      options_(options),
+      diagnostics_(options.message),
+      given_{options.stack.preset.overrides, options.stack.preset.arguments} {}
 Backend::~Backend() = default;
 
 Result<std::unique_ptr<Backend>> Backend::open(std::shared_ptr<SharedDevice> device, const BackendOptions& options) {
@@ -38,24 +41,32 @@ Result<std::unique_ptr<Backend>> Backend::open(std::shared_ptr<SharedDevice> dev
 }
 
 Result<void> Backend::set(const Override& one) {
-  std::vector<Override> all = overrides_;
-  std::erase_if(all, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
-  all.push_back(one);
+  Given all = given_;
+  std::erase_if(all.overrides, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
+  all.overrides.push_back(one);
   return set_all(std::move(all), MustFit::last_override);
 }
 
 Result<void> Backend::unset(const std::optional<std::string>& name) {
-  std::vector<Override> all = overrides_;
-  std::erase_if(all, [&](const Override& o) { return !name || o.entry + "." + o.setting == *name; });
-  if (all.size() == overrides_.size()) return {};
+  Given all = given_;
+  if (std::erase_if(all.overrides, [&](const Override& o) { return !name || o.entry + "." + o.setting == *name; }) == 0)
+    return {};
   return set_all(std::move(all), MustFit::nothing);
 }
 
-Result<void> Backend::set_all(std::vector<Override> all, MustFit must_fit) {
+Result<void> Backend::set_argument(const std::string& name, const std::optional<std::string>& value) {
+  Given all = given_;
+  const auto gone = std::erase_if(all.arguments, [&](const ArgumentValue& a) { return a.name == name; });
+  if (value) all.arguments.push_back({name, *value});
+  if (!value && gone == 0) return {};
+  return set_all(std::move(all), value ? MustFit::last_argument : MustFit::nothing);
+}
+
+Result<void> Backend::set_all(Given all, MustFit must_fit) {
   const Stack* before = &source_->stack();
   const auto done = source_->set(all, must_fit);
   forget_what_went(before);
-  if (done) overrides_ = std::move(all);
+  if (done) given_ = std::move(all);
   return done;
 }
 

@@ -18,9 +18,10 @@ class Loaded : public Source {
       : device_(device), options_(options), diagnostics_(diagnostics) {}
 
   Stack& stack() override { return *stack_; }
-  Result<void> set(const std::vector<Override>& overrides, MustFit must_fit) override {
+  Result<void> set(const Given& given, MustFit must_fit) override {
     StackOptions wanted = options_.stack;
-    wanted.preset.overrides = overrides;
+    wanted.preset.overrides = given.overrides;
+    wanted.preset.arguments = given.arguments;
     wanted.preset.must_fit = must_fit;
     return load(wanted);
   }
@@ -57,6 +58,7 @@ class Followed : public Source {
   Followed(const BackendOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
 
   Result<void> open(SharedDevice& device) {
+    if (!options_.stack.preset.arguments.empty()) AFTERGLOW_CHECK(attempt(options_.stack.preset));
     LiveOptions live;
     live.stack = options_.stack;
     live.own_images = !options_.commands;
@@ -69,15 +71,14 @@ class Followed : public Source {
 
   Stack& stack() override { return *live_->stack(); }
 
-  Result<void> set(const std::vector<Override>& overrides, MustFit must_fit) override {
-    // Tried here first, since a LiveStack leaves out all that does not fit.
+  Result<void> set(const Given& given, MustFit must_fit) override {
     PresetOptions wanted = options_.stack.preset;
-    wanted.overrides = overrides;
+    wanted.overrides = given.overrides;
+    wanted.arguments = given.arguments;
     wanted.leave_out_unfit = true;
     wanted.must_fit = must_fit;
-    ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
-    AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
-    live_->set_overrides(overrides);
+    AFTERGLOW_CHECK(attempt(wanted));
+    live_->set_overrides(given.overrides, given.arguments);
     return settle();
   }
 
@@ -115,6 +116,12 @@ class Followed : public Source {
   }
 
  private:
+  /// A LiveStack leaves out all that does not fit: what must fit is tried here first.
+  Result<void> attempt(const PresetOptions& wanted) {
+    ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
+    AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
+    return {};
+  }
   Result<void> settle() {
     live_->settle();
     if (live_->update()) tell_warnings();

@@ -44,6 +44,17 @@ std::string settings_document(const Backend& backend) {
   return dumped(out);
 }
 
+std::string arguments_document(const Backend& backend) {
+  Json out = Json::array();
+  for (const auto& argument : backend.preset().arguments()) {
+    Json item = setting_json(argument.schema);
+    item["value"] = value_json(argument.value);
+    item["given"] = argument.given;
+    out.push_back(std::move(item));
+  }
+  return dumped(out);
+}
+
 std::string explain_document(const Backend& backend) {
   const Explanation& explanation = backend.explanation();
   const std::vector<Skipped> skipped = backend.report().skipped;

@@ -145,6 +145,22 @@ afterglow_error* afterglow_stack_unset(afterglow_stack* stack, afterglow_string 
   });
 }
 
+afterglow_error* afterglow_stack_arguments(const afterglow_stack* stack, afterglow_text** out) {
+  return call([&]() -> Result<void> {
+    AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_arguments"));
+    return give(arguments_document(*backend), out, "afterglow_stack_arguments");
+  });
+}
+
+afterglow_error* afterglow_stack_set_argument(afterglow_stack* stack, afterglow_string name, afterglow_string value) {
+  return call([&]() -> Result<void> {
+    AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_set_argument"));
+    AFTERGLOW_TRY(const ArgumentValue one, parse_argument(text_of(name) + "=" + text_of(value)));
+    if (one.name != text_of(name)) return usage(fmt::format("'{}' is no name of an argument", text_of(name)));
+    return backend->set_argument(one.name, is_given(value) ? std::optional(one.value) : std::nullopt);
+  });
+}
+
 afterglow_error* afterglow_stack_get_number(const afterglow_stack* stack, afterglow_string name, double* out) {
   return call([&]() -> Result<void> {
     if (!out) return usage("afterglow_stack_get_number: out is NULL");

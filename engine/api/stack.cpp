@@ -71,10 +71,14 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (given.follow && is_given(given.preset_text))
     return usage("afterglow_stack_options: a preset_text cannot be followed");
   if (given.path_count > 0 && !given.paths) return usage("afterglow_stack_options: paths is NULL");
+  if (given.argument_count > 0 && !given.arguments) return usage("afterglow_stack_options: arguments is NULL");
   if (!(given.max_error >= 0)) return usage("afterglow_stack_options: max_error must not be negative");
 
   BackendOptions out;
   for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(text_of(given.paths[i]));
+  for (std::size_t i = 0; i < given.argument_count; ++i) {
+    AFTERGLOW_TRY(out.stack.preset.arguments.emplace_back(), parse_argument(text_of(given.arguments[i])));
+  }
   out.stack.preset.installation = text_of(given.installation);
   if (is_given(given.preset_text)) {
     out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";

@@ -94,6 +94,7 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
   runtime->given_arguments = options.arguments;
   runtime->leave_out_unfit = options.leave_out_unfit;
+  runtime->last_argument_must_fit = options.must_fit == MustFit::last_argument;
   DeclaredStack stack = load_stack(lua, file, options.text);
   runtime->declaring = false;
   check_arguments(*runtime);

@@ -96,7 +96,7 @@ struct ScriptLimits {
 };
 
 /// What is an error all the same where other values that do not fit are left out.
-enum class MustFit { nothing, last_override };
+enum class MustFit { nothing, last_override, last_argument };
 
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path

@@ -145,6 +145,30 @@ def test_settings(stack):
     assert stack.report()["kernels"] == ["gain.gain"]
 
 
+def test_arguments(folder, device):
+    (folder / "look.lua").write_text(
+        'local fx = require "afterglow"\n'
+        "local args = fx.args { strength = fx.float { default = 2, min = 0, max = 9, doc = '.' },\n"
+        "  on = fx.bool { default = false, doc = '.' }, tint = fx.color { default = { 1, 1, 1 }, doc = '.' },\n"
+        "  way = fx.enum { 'post_process', 'after_post_process', default = 'post_process', doc = '.' } }\n"
+        "return fx.stack { fx.gain { amount = args.strength, off = args.on, tint = args.tint, at = args.way } }\n"
+    )
+    args = {"strength": np.float32(3), "on": np.bool_(True), "tint": (1, 0.5, 0), "way": "after_post_process"}
+    stack = afterglow.Stack(folder / "look.lua", device=device, args=args)
+    values = [stack.get("gain." + name) for name in ("amount", "off", "tint", "at")]
+    assert values == [3, True, [1, 0.5, 0], "after_post_process"]
+    assert {one["name"]: one["given"] for one in stack.arguments} == dict.fromkeys(args, True)
+    stack.set_argument("strength", 4)
+    assert stack.get("gain.amount") == 4
+    stack.set_argument("strength", None)
+    assert stack.get("gain.amount") == 2
+    with pytest.raises(afterglow.UsageError) as caught:
+        stack.set_argument("strenght", 1)
+    assert caught.value.nearest == "strength"
+    with pytest.raises(TypeError, match="strength must be"):
+        afterglow.Stack(folder / "look.lua", device=device, args={"strength": {}})
+
+
 def test_errors_name_file_and_line(folder, device, stack):
     with pytest.raises(afterglow.UsageError) as caught:
         stack.set("gain.amonut", 1)

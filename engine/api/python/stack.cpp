@@ -27,6 +27,11 @@ constexpr const char* kWhat = std::is_same_v<T, bool>   ? "a bool"
                               : std::is_arithmetic_v<T> ? "a number"
                                                         : "a str";
 
+bool is_bool(const py::handle& value) {
+  return py::isinstance<py::bool_>(value) || py::isinstance(value, py::module_::import("numpy").attr("bool_"));
+}
+bool is_number(const py::handle& value) { return PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr()); }
+
 /// Options by name, each asked for once; what nobody asked for is unknown.
 class Options {
  public:
@@ -109,6 +114,18 @@ afterglow_rect region_of(const py::object& region) {
   return {x, y, width, height};
 }
 
+/// As the command line writes it.
+std::string argument_text(const std::string& name, const py::handle& value) {
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
+  if (is_number(value)) return py::repr(py::float_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  std::string text;
+  for (const double number : cast<std::vector<double>>(py::reinterpret_borrow<py::object>(value), name,
+                                                       "a bool, a number, a str or some numbers"))
+    text += (text.empty() ? "{" : ", ") + py::repr(py::float_(number)).cast<std::string>();
+  return text + "}";
+}
+
 }  // namespace
 
 void raise(const Error& error) {
@@ -145,6 +162,11 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   if (const py::object folder = options.take("installation"); !folder.is_none())
     wanted.installation = path_text(folder);
   if (const py::object file = options.take("calibration"); !file.is_none()) wanted.calibration = path_text(file);
+  if (const py::object args = options.take("args"); !args.is_none())
+    for (const auto& [key, value] : cast<py::dict>(args, "args", "a dict")) {
+      const std::string name = py::str(key);
+      wanted.arguments.push_back(name + "=" + argument_text(name, value));
+    }
   wanted.precision = precision_of(options.take("precision", std::string("auto")));
   wanted.max_error = options.take("max_error", 0.0);
   wanted.max_memory = options.take("max_memory", std::uint64_t{0});
@@ -217,7 +239,7 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
 }
 
 void PyStack::set(const std::string& name, const py::object& value) {
-  if (py::isinstance<py::bool_>(value) || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) {
+  if (is_bool(value)) {
     const bool on = value.cast<bool>();
     return alone([&] { stack_->set(name, on); });
   }
@@ -225,7 +247,7 @@ void PyStack::set(const std::string& name, const py::object& value) {
     const auto text = value.cast<std::string>();
     return alone([&] { check(afterglow_stack_set(stack_->get(), to_view(name), to_view(text))); });
   }
-  if (PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr())) {
+  if (is_number(value)) {
     const auto number = cast<double>(value, name, "a number");
     return alone([&] { stack_->set(name, number); });
   }
@@ -235,6 +257,12 @@ void PyStack::set(const std::string& name, const py::object& value) {
 
 void PyStack::unset(const std::optional<std::string>& name) {
   alone([&] { name ? stack_->unset(*name) : stack_->unset_all(); });
+}
+
+void PyStack::set_argument(const std::string& name, const py::object& value) {
+  if (value.is_none()) return alone([&] { stack_->unset_argument(name); });
+  const std::string text = argument_text(name, value);
+  alone([&] { stack_->set_argument(name, text); });
 }
 
 py::object PyStack::get(const std::string& name) const {
@@ -269,6 +297,7 @@ py::object PyStack::get_plainly(const std::string& name) const {
 }
 
 py::object PyStack::settings() const { return json(&Stack::settings); }
+py::object PyStack::arguments() const { return json(&Stack::arguments); }
 py::object PyStack::explain() const { return json(&Stack::explain); }
 py::object PyStack::report() const { return json(&Stack::report); }
 

@@ -77,5 +77,21 @@ TEST_F(ClassesTest, ADeviceThatIsReplacedEndsBeforeItsSink) {
   EXPECT_THAT(device.describe(), HasSubstr("\"name\""));
 }
 
+TEST_F(ClassesTest, ArgumentsAreGiven) {
+  write("look.lua",
+        "local fx = require 'afterglow'\nlocal args = fx.args { strength = fx.float { default = 2, min = 0, max = 9, "
+        "doc = 'How much.' } }\nreturn fx.stack { fx.gain { amount = args.strength } }\n");
+  const Device device;
+  StackOptions options;
+  options.arguments = {"strength=4"};
+  Stack stack(device, file("look.lua"), options);
+  EXPECT_EQ(stack.get_number("gain.amount"), 4);
+  stack.set_argument("strength", "6");
+  EXPECT_EQ(stack.get_number("gain.amount"), 6);
+  EXPECT_THAT(stack.arguments(), HasSubstr("How much."));
+  stack.unset_argument("strength");
+  EXPECT_EQ(stack.get_number("gain.amount"), 2);
+}
+
 }  // namespace
 }  // namespace afterglow::test
