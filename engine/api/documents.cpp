@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "api/words.h"
 #include "script/explanation.h"
 
 namespace afterglow::api {
@@ -77,7 +78,7 @@ std::string report_document(const BackendReport& report, std::uint64_t mended) {
   Json out{{"preset", report.preset},
            {"device", report.device},
            {"choice", report.choice},
-           {"choice_from", report.choice_from},
+           {"choice_from", for_hosts(report.choice_from)},
            {"max_error", report.max_error},
            {"kernels", report.kernels},
            {"skipped", Json::array()},

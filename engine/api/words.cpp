@@ -17,6 +17,8 @@ constexpr std::array kBeginnings{Words{"--set ", ""}, Words{"--arg ", "argument 
 constexpr std::array kOptions{
     Words{"(--max-memory)", "(max_memory)"},
     Words{"(--max-error)", "(max_error)"},
+    Words{"--reference", "reference"},
+    Words{"; --precision", "; precision"},
     Words{"(--stats=passes)", "(time_kernels)"},
     Words{"(--at, position in the preset, worldToCamera in the file)", "(position of the frame or in the preset)"},
 };

@@ -5,7 +5,16 @@
 namespace afterglow::test {
 namespace {
 
-using ErrorTest = ApiTest;
+class ErrorTest : public ApiTest {
+ protected:
+  StackPtr prepared(const afterglow_stack_options& options) const {
+    StackPtr out = stack(options);
+    afterglow_shape shape = afterglow_shape_default();
+    shape.width = shape.height = 4;
+    EXPECT_TRUE(fine(afterglow_stack_prepare(out.get(), &shape, nullptr)));
+    return out;
+  }
+};
 
 TEST_F(ErrorTest, NamesKindFileLineAllowedAndNearest) {
   write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.gain { amonut = 2 },\n}\n");
@@ -78,6 +87,16 @@ TEST_F(ErrorTest, MessagesSpeakOfTheLibrary) {
   look("fx.fog {}");
   ASSERT_TRUE(fine(afterglow_stack_reload(small.get(), afterglow_str(nullptr))));
   EXPECT_THAT(messages_, testing::ElementsAre(testing::StartsWith("gain.amount: the stack has no entry 'gain'")));
+}
+
+TEST_F(ErrorTest, ReportsSpeakOfTheLibrary) {
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.reference = true;
+  EXPECT_EQ(json_of(afterglow_stack_report, prepared(options).get())["choice_from"], "reference");
+  options.reference = false;
+  options.precision = AFTERGLOW_PRECISION_FP32;
+  EXPECT_THAT(json_of(afterglow_stack_report, prepared(options).get())["choice_from"].get<std::string>(),
+              testing::EndsWith("; precision"));
 }
 
 TEST_F(ErrorTest, AnInstallationThatIsNoneIsTold) {
