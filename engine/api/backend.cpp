@@ -64,7 +64,7 @@ Result<void> Backend::set_argument(const std::string& name, const std::optional<
 
 Result<void> Backend::set_all(Given all, MustFit must_fit) {
   const Stack* before = &source_->stack();
-  const auto done = source_->set(all, must_fit);
+  auto done = source_->set(all, must_fit);
   forget_what_went(before);
   if (done) given_ = std::move(all);
   return done;

@@ -68,6 +68,7 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
   AFTERGLOW_TRY(const Override parts, override_of(name, "0"));
   const auto& entries = backend->entries();
   std::vector<std::string> names;
+  names.reserve(entries.size());
   for (const auto& entry : entries) names.push_back(entry.name);
   const auto entry = std::ranges::find(entries, parts.entry, &StackEntry::name);
   if (entry == entries.end())
