@@ -64,8 +64,8 @@ int main(int argc, char **argv) {
   FILE *file = fopen(argv[2], "wb");
   if (!file) return perror(argv[2]), 4;
   fprintf(file, "P6\n%d %d\n255\n", WIDTH, HEIGHT);
-  fwrite(graded, sizeof graded, 1, file);
-  if (fclose(file) != 0) return perror(argv[2]), 4;
+  const int written = fwrite(graded, sizeof graded, 1, file) == 1;
+  if (fclose(file) != 0 || !written) return perror(argv[2]), 4;
 
   afterglow_stack_free(stack);
   afterglow_device_free(device);

@@ -186,6 +186,9 @@ typedef struct afterglow_stack_options {
   afterglow_message_callback message;
   afterglow_wake_callback wake; /* only with `follow` */
   void *user;                   /* for both callbacks */
+  /* Values of what the preset declares by fx.args: "NAME=VALUE" each, as for `afterglow --arg`. */
+  const afterglow_string *arguments;
+  size_t argument_count;
 } afterglow_stack_options;
 
 static inline afterglow_stack_options afterglow_stack_options_default(void) {
@@ -204,8 +207,12 @@ AFTERGLOW_API afterglow_error *afterglow_stack_create(afterglow_device *device, 
 AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
 
 /* ---- settings -----------------------------------------------------------------------------------------------------
- * A setting is named "ENTRY.SETTING", as in "glow.intensity". A value that was set stays over reloads, and stands
- * above what the preset says, also over curves and volumes. One thread at a time, for all functions below. */
+ * A setting is named "ENTRY.SETTING", as in "glow.intensity". What every entry has goes by such names too:
+ * "glow.enabled", "at", "order", "opacity", "blend", "mask" (a number) and the settings of its mask
+ * ("glow.mask.luma.from"). A value that was set stays over reloads, and stands above what the preset says, also over
+ * curves and volumes. Where the preset has come to have no such setting, it is left out with a message, and counts
+ * again when there is one. Where nothing is followed, scripts, shaders and look-up tables that were read are not read
+ * again: only afterglow_stack_reload does that. One thread at a time, for all functions below. */
 
 /* The entries in the order of execution with their settings, as JSON:
  *   [{"name", "effect", "at", "order", "enabled", "file", "line",
@@ -226,10 +233,21 @@ AFTERGLOW_API afterglow_error *afterglow_stack_set_text(afterglow_stack *stack, 
                                                         afterglow_string value);
 AFTERGLOW_API afterglow_error *afterglow_stack_set_numbers(afterglow_stack *stack, afterglow_string name,
                                                            const double *values, size_t count);
-/* Back to what the preset says. A name that was not set is no error; a name that is not given means all. */
+/* Back to what the preset says. A name that was not set is no error; a name that is not given means all. Errors:
+ * usage (an empty name), script. */
 AFTERGLOW_API afterglow_error *afterglow_stack_unset(afterglow_stack *stack, afterglow_string name);
 
-/* Values as they are in the frame that was prepared or run last. Errors: usage (unknown name, another type). */
+/* What the preset declares by fx.args, as JSON: settings as above, and "given" where a value was. */
+AFTERGLOW_API afterglow_error *afterglow_stack_arguments(const afterglow_stack *stack, afterglow_text **out);
+
+/* Gives one of them a value, from the text that `afterglow --arg NAME=VALUE` takes; a value that is not given means its
+ * default. The preset runs again, which may change everything but what was set. Stays over reloads as settings do.
+ * Errors: usage (unknown name, value that is not allowed), script. */
+AFTERGLOW_API afterglow_error *afterglow_stack_set_argument(afterglow_stack *stack, afterglow_string name,
+                                                            afterglow_string value);
+
+/* Values as they are in the frame that was prepared or run last. A mask that is no number is a text: "luma * (1 -
+ * radial)". Errors: usage (unknown name, another type). */
 AFTERGLOW_API afterglow_error *afterglow_stack_get_number(const afterglow_stack *stack, afterglow_string name,
                                                           double *out);
 AFTERGLOW_API afterglow_error *afterglow_stack_get_boolean(const afterglow_stack *stack, afterglow_string name,
@@ -243,7 +261,8 @@ AFTERGLOW_API afterglow_error *afterglow_stack_get_numbers(const afterglow_stack
 /* ---- frames -------------------------------------------------------------------------------------------------------*/
 
 /* Where a picture stands in its sequence. Effects that look back go on from the frame before when its number is `step`
- * smaller than this one's; else, or with `restart`, they begin anew. */
+ * smaller than this one's; else, or with `restart`, they begin anew. All numbers are finite, `fps` and `step` above 0;
+ * others are usage errors. */
 typedef struct afterglow_frame {
   size_t struct_size;
   double number, time; /* time in seconds */
@@ -278,9 +297,9 @@ typedef enum afterglow_samples {
 
 /* Pixels of the caller. Channels lie next to each other. */
 typedef struct afterglow_image {
-  void *data; /* the upper left pixel; NULL: no image. Sources are only read */
-  int32_t width, height;
-  int32_t channels; /* colour: 3 (alpha is 1) or 4; depth 1, normal 3, motion 2 */
+  void *data;            /* the upper left pixel; NULL: no image. Sources are only read */
+  int32_t width, height; /* 1 to 16384 */
+  int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3, motion 2 */
   afterglow_samples samples;
   ptrdiff_t row_stride;   /* bytes from one row to the next, may be negative; 0: rows without gaps */
   ptrdiff_t pixel_stride; /* bytes from one pixel to the next; 0: pixels without gaps */
@@ -319,7 +338,7 @@ AFTERGLOW_API afterglow_error *afterglow_stack_run(afterglow_stack *stack, const
 
 typedef struct afterglow_shape {
   size_t struct_size;
-  int32_t width, height;      /* of the source */
+  int32_t width, height;      /* of the source; 1 to 16384 */
   bool depth, normal, motion; /* what comes with it */
   bool display_codes;         /* the result will be 8-bit: sRGB codes */
   bool straight_alpha;        /* with `display_codes`: colours are divided by the source's alpha, which is stored */
@@ -337,12 +356,14 @@ static inline afterglow_shape afterglow_shape_default(void) {
 /* Makes shaders, pipelines and memory for pictures of this shape, or only computes the parameters of this frame when
  * they are there. `frame` may be NULL. afterglow_stack_run does it by itself; hosts that record call it for each frame
  * whose number, time or settings differ. Nothing that was recorded from the stack may be in flight. One thread at a
- * time. Errors: usage, script, io (memory limit), device. */
+ * time. Errors: usage, script, io (memory limit), device. After an error what was prepared before stays, unless shaders
+ * or images could not be made: afterglow_stack_runs is false then. */
 AFTERGLOW_API afterglow_error *afterglow_stack_prepare(afterglow_stack *stack, const afterglow_shape *shape,
                                                        const afterglow_frame *frame);
 
 /* Whether there is anything to run for the frame that was prepared last. If not, the result is the source:
- * afterglow_stack_record records nothing then, and the caller copies. One thread at a time. */
+ * afterglow_stack_record records nothing then, and the caller copies. False where nothing is prepared: at first, and
+ * after a change that was taken (set, unset, update, reload). One thread at a time. */
 AFTERGLOW_API bool afterglow_stack_runs(const afterglow_stack *stack);
 
 /* What earlier frames handed on is forgotten. One thread at a time. */
@@ -351,8 +372,9 @@ AFTERGLOW_API void afterglow_stack_reset_history(afterglow_stack *stack);
 /* ---- live reload --------------------------------------------------------------------------------------------------*/
 
 /* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap
- * when there are none. An edit that is broken is returned as an error, once; the last good preset stays. Nothing that
- * was recorded from the stack may be in flight. One thread at a time. Errors: script, device. */
+ * when there are none. An edit that is broken is returned as an error, once; the last good preset stays, and what was
+ * prepared of it. Where good edits come before a broken one, the next call returns the error. Nothing that was recorded
+ * from the stack may be in flight. One thread at a time. Errors: script, device. */
 AFTERGLOW_API afterglow_error *afterglow_stack_update(afterglow_stack *stack, bool *changed);
 
 /* Reads the files now, or takes another text when `preset_text` is given (then not with `follow`), and takes the result
@@ -362,9 +384,9 @@ AFTERGLOW_API afterglow_error *afterglow_stack_reload(afterglow_stack *stack, af
 /* ---- what happened ------------------------------------------------------------------------------------------------*/
 
 /* How the settings of the last frame came about, as JSON: {"name", "position", "volumes": […], "entries": [{"name",
- * "effect", "state", "reason", "opacity", "blend", "mask", "composition": […], "settings": [{"name", "default", "preset",
- * "volumes", "override", "final"}]}]}. "composition" is of opacity, blend and mask what "settings" is of the others;
- * "mask" is missing where there is none. One thread at a time. */
+ * "effect", "state", "reason", "opacity", "blend", "mask", "composition": […], "settings": [{"name", "default",
+ * "preset", "volumes", "override", "final"}]}]}. "composition" is of opacity, blend and mask what "settings" is of the
+ * others; "mask" is missing where there is none. One thread at a time. */
 AFTERGLOW_API afterglow_error *afterglow_stack_explain(const afterglow_stack *stack, afterglow_text **out);
 
 /* What ran in the last frame, as JSON: {"preset", "device", "choice", "choice_from", "max_error", "kernels", "skipped":

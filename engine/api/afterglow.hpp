@@ -104,6 +104,14 @@ class Device {
   }
 #endif
 
+  Device(Device&&) noexcept = default;
+  /// The device before goes ahead of its sink, which it may still call.
+  Device& operator=(Device&& other) noexcept {
+    handle_ = std::move(other.handle_);
+    sink_ = std::move(other.sink_);
+    return *this;
+  }
+
   afterglow_device* get() const { return handle_.get(); }
   std::string describe() const {  ///< JSON
     return detail::text_from([this](afterglow_text** out) { return afterglow_device_describe(get(), out); });
@@ -137,7 +145,8 @@ struct StackOptions {
   std::uint64_t max_memory = 0;
   bool reference = false, time_kernels = false, follow = false;
   MessageSink message{};
-  std::function<void()> wake{};  ///< called on threads of the library; must not throw
+  std::function<void()> wake{};          ///< called on threads of the library; must not throw
+  std::vector<std::string> arguments{};  ///< "NAME=VALUE", of what the preset declares by fx.args
 };
 
 /// Pixels of the caller, packed: floats, halves (as std::uint16_t) or 8-bit codes.
@@ -167,10 +176,14 @@ class Stack {
     afterglow_stack_options given = afterglow_stack_options_default();
     std::vector<afterglow_string> paths;
     for (const std::string& path : options.paths) paths.push_back(to_view(path));
+    std::vector<afterglow_string> arguments;
+    for (const std::string& argument : options.arguments) arguments.push_back(to_view(argument));
     if (!preset.empty()) given.preset_file = to_view(preset);
     if (!options.preset_text.empty()) given.preset_text = to_view(options.preset_text);
     given.paths = paths.data();
     given.path_count = paths.size();
+    given.arguments = arguments.data();
+    given.argument_count = arguments.size();
     if (!options.installation.empty()) given.installation = to_view(options.installation);
     if (!options.calibration.empty()) given.calibration = to_view(options.calibration);
     given.use = options.use;
@@ -186,6 +199,15 @@ class Stack {
     afterglow_stack* made = nullptr;
     check(afterglow_stack_create(device.get(), &given, &made));
     handle_.reset(made);
+  }
+
+  Stack(Stack&&) noexcept = default;
+  /// The stack before ends ahead of its callbacks, which its threads may still call.
+  Stack& operator=(Stack&& other) noexcept {
+    handle_ = std::move(other.handle_);
+    calls_ = std::move(other.calls_);
+    device_sink_ = std::move(other.device_sink_);
+    return *this;
   }
 
   afterglow_stack* get() const { return handle_.get(); }
@@ -211,6 +233,13 @@ class Stack {
   void unset(std::string_view name) { check(afterglow_stack_unset(get(), to_view(name))); }
   void unset_all() { check(afterglow_stack_unset(get(), afterglow_str(nullptr))); }
 
+  void set_argument(std::string_view name, std::string_view value) {
+    check(afterglow_stack_set_argument(get(), to_view(name), to_view(value)));
+  }
+  void unset_argument(std::string_view name) {
+    check(afterglow_stack_set_argument(get(), to_view(name), afterglow_str(nullptr)));
+  }
+
   double get_number(std::string_view name) const {
     double out = 0;
     check(afterglow_stack_get_number(get(), to_view(name), &out));
@@ -232,8 +261,11 @@ class Stack {
     return out;
   }
 
-  std::string settings() const {  ///< JSON, as the two below
+  std::string settings() const {  ///< JSON, as the three below
     return detail::text_from([this](afterglow_text** out) { return afterglow_stack_settings(get(), out); });
+  }
+  std::string arguments() const {
+    return detail::text_from([this](afterglow_text** out) { return afterglow_stack_arguments(get(), out); });
   }
   std::string explain() const {
     return detail::text_from([this](afterglow_text** out) { return afterglow_stack_explain(get(), out); });

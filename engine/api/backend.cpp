@@ -23,7 +23,10 @@ void SharedDevice::share(const std::filesystem::path& cache_folder) {
 }
 
 Backend::Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options)
-    : device_(std::move(device)), options_(options), diagnostics_(options.message) {}
+    : device_(std::move(device)),
+      options_(options),
+      diagnostics_(options.message),
+      given_{options.stack.preset.overrides, options.stack.preset.arguments} {}
 Backend::~Backend() = default;
 
 Result<std::unique_ptr<Backend>> Backend::open(std::shared_ptr<SharedDevice> device, const BackendOptions& options) {
@@ -38,59 +41,89 @@ Result<std::unique_ptr<Backend>> Backend::open(std::shared_ptr<SharedDevice> dev
 }
 
 Result<void> Backend::set(const Override& one) {
-  std::vector<Override> all = overrides_;
-  std::erase_if(all, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
-  all.push_back(one);
-  return set_all(std::move(all));
+  Given all = given_;
+  std::erase_if(all.overrides, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
+  all.overrides.push_back(one);
+  return set_all(std::move(all), MustFit::last_override);
 }
 
-Result<void> Backend::unset(const std::string& name) {
-  std::vector<Override> all = overrides_;
-  std::erase_if(all, [&](const Override& o) { return name.empty() || o.entry + "." + o.setting == name; });
-  if (all.size() == overrides_.size()) return {};
-  return set_all(std::move(all));
+Result<void> Backend::unset(const std::optional<std::string>& name) {
+  Given all = given_;
+  if (std::erase_if(all.overrides, [&](const Override& o) { return !name || o.entry + "." + o.setting == *name; }) == 0)
+    return {};
+  return set_all(std::move(all), MustFit::nothing);
 }
 
-Result<void> Backend::set_all(std::vector<Override> all) {
-  AFTERGLOW_CHECK(source_->set(all));
-  overrides_ = std::move(all);
-  forget();
-  return {};
+Result<void> Backend::set_argument(const std::string& name, const std::optional<std::string>& value) {
+  Given all = given_;
+  const auto gone = std::erase_if(all.arguments, [&](const ArgumentValue& a) { return a.name == name; });
+  if (value) all.arguments.push_back({name, *value});
+  if (!value && gone == 0) return {};
+  return set_all(std::move(all), value ? MustFit::last_argument : MustFit::nothing);
+}
+
+Result<void> Backend::set_all(Given all, MustFit must_fit) {
+  const Stack* before = &source_->stack();
+  auto done = source_->set(all, must_fit);
+  forget_what_went(before);
+  if (done) given_ = std::move(all);
+  return done;
 }
 
 Result<bool> Backend::update() {
+  const Stack* before = &source_->stack();
   auto changed = source_->update();
-  if (!changed || *changed) forget();
+  forget_what_went(before);
   return changed;
 }
 
 Result<void> Backend::reload(const std::optional<std::string>& text) {
-  forget();
-  return source_->reload(text);
+  const Stack* before = &source_->stack();
+  auto done = source_->reload(text);
+  forget_what_went(before);
+  return done;
 }
 
-/// What was prepared may be of a stack that is no more.
-void Backend::forget() {
+/// What was prepared goes with its stack (`before`, which may be no more) or its program; a failure alone leaves it.
+void Backend::forget_what_went(const Stack* before) {
+  Stack& now = source_->stack();
+  if (&now == before && now.programs()->work()) return;
   prepared_ = false;
   build_.reset();
   last_ = {};
 }
 
 Result<void> Backend::prepare(const Shape& shape) {
-  forget();
-  AFTERGLOW_TRY(build_, source_->evaluate(shape));
-  AFTERGLOW_CHECK(source_->stack().prepare(request_for(build_, shape.encoding, shape.region)));
-  skipped_ = source_->stack().skipped();
+  const Stack* before = &source_->stack();
+  auto done = prepare_frame(shape);
+  if (!done) forget_what_went(before);
+  return done;
+}
+
+Result<void> Backend::prepare_frame(const Shape& shape) {
+  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
+  Stack& stack = source_->stack();
+  AFTERGLOW_CHECK(stack.prepare(request_for(build, shape.encoding, shape.region)));
   prepared_ = true;
+  build_ = std::move(build);
+  skipped_ = stack.skipped();
+  last_ = {};
   return {};
 }
 
 Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result) {
-  forget();
+  const Stack* before = &source_->stack();
+  auto done = run_frame(shape, inputs, result);
+  if (!done) forget_what_went(before);
+  return done;
+}
+
+Result<void> Backend::run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs,
+                                HostResult& result) {
   clamped_ = 0;
-  AFTERGLOW_TRY(build_, source_->evaluate(shape));
+  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
   Stack& stack = source_->stack();
-  AFTERGLOW_TRY(RenderRequest request, stack.request(request_for(build_, shape.encoding, shape.region)));
+  AFTERGLOW_TRY(RenderRequest request, stack.request(request_for(build, shape.encoding, shape.region)));
   const bool runs = request.work.runs();
   if (!runs) {
     AFTERGLOW_CHECK(stack.programs()->prepare(std::move(request.work), stack.shaders()));
@@ -100,9 +133,10 @@ Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostIm
   if (runs && options_.time_kernels)
     request.timing = device_->device->timestamps_mean_draws() ? KernelTiming::timestamps : KernelTiming::submissions;
   AFTERGLOW_TRY(last_, renderer_->render(std::move(request), result));
+  prepared_ = true;
+  build_ = std::move(build);
   skipped_ = stack.skipped();
   clamped_ = result.clamped;
-  prepared_ = true;
   return {};
 }
 

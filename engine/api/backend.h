@@ -44,6 +44,12 @@ struct BackendOptions {
   std::function<void()> wake;
 };
 
+/// What a host says about a preset; later values win.
+struct Given {
+  std::vector<Override> overrides;
+  std::vector<ArgumentValue> arguments;
+};
+
 /// What a frame is made for.
 struct Shape {
   BuildContext context;
@@ -56,8 +62,9 @@ class Source {
  public:
   virtual ~Source() = default;
   virtual Stack& stack() = 0;  ///< the last good one
-  /// All of them. When there is an error the ones before stay.
-  virtual Result<void> set(const std::vector<Override>& overrides) = 0;
+  /// All of them; those that do not fit are left out with a warning, unless they must. When there is an error the ones
+  /// before stay.
+  virtual Result<void> set(const Given& given, MustFit must_fit) = 0;
   virtual Result<bool> update() = 0;
   virtual Result<void> reload(const std::optional<std::string>& text) = 0;
   /// What the preset says about the frame; edits that have to be waited for are taken first.
@@ -95,7 +102,9 @@ class Backend {
 
   /// One more override; one of the same name goes. Errors: usage, script: then the ones before stay.
   Result<void> set(const Override& one);
-  Result<void> unset(const std::string& name);
+  Result<void> unset(const std::optional<std::string>& name);  ///< none: all
+  /// No value: its default.
+  Result<void> set_argument(const std::string& name, const std::optional<std::string>& value);
   Result<bool> update();
   Result<void> reload(const std::optional<std::string>& text);
 
@@ -115,12 +124,14 @@ class Backend {
 
  private:
   Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
-  Result<void> set_all(std::vector<Override> all);
-  void forget();
+  Result<void> set_all(Given all, MustFit must_fit);
+  void forget_what_went(const Stack* before);
+  Result<void> prepare_frame(const Shape& shape);
+  Result<void> run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result);
   std::shared_ptr<SharedDevice> device_;  // last to go
   BackendOptions options_;
   Diagnostics diagnostics_;
-  std::vector<Override> overrides_;
+  Given given_;
   std::unique_ptr<Source> source_;
   std::unique_ptr<Renderer> renderer_;  // first to go: it waits for what is in flight
   bool prepared_ = false, bound_ = false;

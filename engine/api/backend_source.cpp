@@ -1,43 +1,51 @@
 // SPDX-License-Identifier: MIT
 // Where stacks come from.
+#include <algorithm>
 #include <mutex>
 
 #include "api/backend.h"
+#include "core/file_record.h"
 #include "session/live.h"
 
 namespace afterglow::api {
 namespace {
 
-/// Loaded in the caller's thread, whenever it asks.
+/// Loaded in the caller's thread, whenever it asks. Scripts and shaders are what they were when they were read first:
+/// only `reload` reads them again.
 class Loaded : public Source {
  public:
   Loaded(SharedDevice& device, const BackendOptions& options, Diagnostics& diagnostics)
       : device_(device), options_(options), diagnostics_(diagnostics) {}
 
-  Result<void> load(const StackOptions& wanted) {
-    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
-    later->use(*device_.device, !options_.commands);
-    if (stack_) later->take_over(*stack_, true);
-    stack_ = std::move(later);
-    options_.stack = wanted;
-    return {};
-  }
-
   Stack& stack() override { return *stack_; }
-  Result<void> set(const std::vector<Override>& overrides) override {
+  Result<void> set(const Given& given, MustFit must_fit) override {
     StackOptions wanted = options_.stack;
-    wanted.preset.overrides = overrides;
+    wanted.preset.overrides = given.overrides;
+    wanted.preset.arguments = given.arguments;
+    wanted.preset.must_fit = must_fit;
     return load(wanted);
   }
   Result<bool> update() override { return false; }
   Result<void> reload(const std::optional<std::string>& text) override {
     StackOptions wanted = options_.stack;
     if (text) wanted.preset.text = *text;
+    wanted.preset.record = FileRecord::keeping();
     return load(wanted);
   }
   Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override { return stack_->evaluate(shape.context); }
 
  private:
+  Result<void> load(const StackOptions& wanted) {
+    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
+    later->use(*device_.device, !options_.commands);
+    if (stack_) later->take_over(*stack_, true);
+    stack_ = std::move(later);
+    options_.stack = wanted;
+    options_.stack.preset.leave_out_unfit = true;  // the preset may come to be another one
+    options_.stack.preset.must_fit = MustFit::nothing;
+    return {};
+  }
+
   SharedDevice& device_;
   BackendOptions options_;
   Diagnostics& diagnostics_;
@@ -50,6 +58,7 @@ class Followed : public Source {
   Followed(const BackendOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
 
   Result<void> open(SharedDevice& device) {
+    if (!options_.stack.preset.arguments.empty()) AFTERGLOW_CHECK(attempt(options_.stack.preset));
     LiveOptions live;
     live.stack = options_.stack;
     live.own_images = !options_.commands;
@@ -62,25 +71,28 @@ class Followed : public Source {
 
   Stack& stack() override { return *live_->stack(); }
 
-  Result<void> set(const std::vector<Override>& overrides) override {
-    // Tried here first, since a LiveStack leaves out what does not fit.
+  Result<void> set(const Given& given, MustFit must_fit) override {
     PresetOptions wanted = options_.stack.preset;
-    wanted.overrides = overrides;
-    ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
-    AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
-    live_->set_overrides(overrides);
+    wanted.overrides = given.overrides;
+    wanted.arguments = given.arguments;
+    wanted.leave_out_unfit = true;
+    wanted.must_fit = must_fit;
+    AFTERGLOW_CHECK(attempt(wanted));
+    live_->set_overrides(given.overrides, given.arguments);
     return settle();
   }
 
   Result<bool> update() override {
-    const bool changed = live_->update();
-    if (changed) tell_warnings();
+    if (live_->update()) {
+      tell_warnings();
+      return true;  // what is wrong with a later edit is said the next time
+    }
     const LiveStatus status = live_->status();
     const std::string text = status.error ? status.error->text() : "";
-    if (text == told_error_) return changed;
+    if (text == told_error_) return false;
     told_error_ = text;
     if (status.error) return *status.error;
-    return changed;
+    return false;
   }
 
   Result<void> reload(const std::optional<std::string>&) override {
@@ -104,6 +116,12 @@ class Followed : public Source {
   }
 
  private:
+  /// A LiveStack leaves out all that does not fit: what must fit is tried here first.
+  Result<void> attempt(const PresetOptions& wanted) {
+    ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
+    AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
+    return {};
+  }
   Result<void> settle() {
     live_->settle();
     if (live_->update()) tell_warnings();
@@ -115,8 +133,12 @@ class Followed : public Source {
     const LiveStatus status = live_->status();
     return status.error ? *status.error : Error{ErrorKind::script, "the preset cannot be loaded"};
   }
+  /// Those that were not told of the stack before.
   void tell_warnings() {
-    for (const auto& warning : live_->status().warnings) diagnostics_.warn(warning);
+    std::vector<std::string> warnings = live_->status().warnings;
+    for (const auto& warning : warnings)
+      if (std::ranges::find(told_, warning) == told_.end()) diagnostics_.warn(warning);
+    told_ = std::move(warnings);
   }
 
   BackendOptions options_;
@@ -125,6 +147,7 @@ class Followed : public Source {
   std::unique_ptr<LiveStack> live_;
   std::optional<BuildContext> context_;
   std::optional<DisplayEncoding> encoding_;
+  std::vector<std::string> told_;
   std::string told_error_;
 };
 
@@ -133,7 +156,7 @@ class Followed : public Source {
 Result<std::unique_ptr<Source>> load_source(SharedDevice& device, const BackendOptions& options,
                                             Diagnostics& diagnostics) {
   auto source = std::make_unique<Loaded>(device, options, diagnostics);
-  AFTERGLOW_CHECK(source->load(options.stack));
+  AFTERGLOW_CHECK(source->reload({}));
   return std::unique_ptr<Source>(std::move(source));
 }
 

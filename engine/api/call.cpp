@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "api/call.h"
 
+#include "api/words.h"
 #include "core/printable.h"
 
 namespace afterglow::api {
@@ -18,6 +19,7 @@ afterglow_error* no_memory() noexcept { return the_error_without_memory(); }
 
 afterglow_error* new_error(Error error) noexcept {
   try {
+    error = for_hosts(std::move(error));
     std::string text = error.text();
     error.message = printable(std::move(error.message));
     return new afterglow_error{std::move(error), std::move(text)};
@@ -37,7 +39,7 @@ Result<void> give(std::string text, afterglow_text** out, const char* function) 
 Diagnostics::Sink sink_of(afterglow_message_callback message, void* user) {
   if (!message) return {};
   return [message, user](Severity severity, const std::string& text) {
-    message(user, severity == Severity::warning ? AFTERGLOW_WARNING : AFTERGLOW_NOTE, view(text));
+    message(user, severity == Severity::warning ? AFTERGLOW_WARNING : AFTERGLOW_NOTE, view(for_hosts(text)));
   };
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "api/words.h"
 #include "script/explanation.h"
 
 namespace afterglow::api {
@@ -44,6 +45,17 @@ std::string settings_document(const Backend& backend) {
   return dumped(out);
 }
 
+std::string arguments_document(const Backend& backend) {
+  Json out = Json::array();
+  for (const auto& argument : backend.preset().arguments()) {
+    Json item = setting_json(argument.schema);
+    item["value"] = value_json(argument.value);
+    item["given"] = argument.given;
+    out.push_back(std::move(item));
+  }
+  return dumped(out);
+}
+
 std::string explain_document(const Backend& backend) {
   const Explanation& explanation = backend.explanation();
   const std::vector<Skipped> skipped = backend.report().skipped;
@@ -66,7 +78,7 @@ std::string report_document(const BackendReport& report, std::uint64_t mended) {
   Json out{{"preset", report.preset},
            {"device", report.device},
            {"choice", report.choice},
-           {"choice_from", report.choice_from},
+           {"choice_from", for_hosts(report.choice_from)},
            {"max_error", report.max_error},
            {"kernels", report.kernels},
            {"skipped", Json::array()},

@@ -14,6 +14,7 @@
 #include "gpu/image.h"
 #include "image/encode.h"
 #include "image/picture.h"
+#include "image/reader.h"
 #include "image/srgb.h"
 
 namespace afterglow::api {
@@ -193,11 +194,16 @@ std::uint64_t write_row(const ResultRules& rules, int x, int y, int width, VkFor
 
 }  // namespace
 
+Result<void> check_size(Size size) {
+  const int most = ReadOptions().max_side;
+  if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= most) return {};
+  return usage(fmt::format("{}×{} pixels; sides go from 1 to {}", size.width, size.height, most));
+}
+
 Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const char* name) {
   const auto fail = [&](const std::string& why) { return usage(fmt::format("image '{}': {}", name, why)); };
   if (!given.data) return fail("data is NULL");
-  if (given.width < 1 || given.height < 1)
-    return fail(fmt::format("{}×{} pixels; sides start at 1", given.width, given.height));
+  if (auto fits = check_size({given.width, given.height}); !fits) return fail(fits.error().message);
   const auto [least, most] = channels_of(role);
   if (given.channels < least || given.channels > most)
     return fail(fmt::format("{} channels; allowed: {}", given.channels,

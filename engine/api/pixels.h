@@ -29,6 +29,9 @@ struct Pixels {
 
 enum class ImageRole { color, depth, normal, motion };
 
+/// Errors (usage): no picture is so small or so large.
+Result<void> check_size(Size size);
+
 /// Errors (usage): no data, sizes, channels or samples that the role does not allow, strides shorter than a pixel.
 Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const char* name);
 

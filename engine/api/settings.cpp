@@ -15,25 +15,51 @@ namespace {
 /// "ENTRY.SETTING" and the text of a value. Errors: usage.
 Result<Override> override_of(afterglow_string name, const std::string& value) {
   const std::string full = text_of(name);
-  if (full.find('=') != std::string::npos) return usage(fmt::format("a setting cannot be named '{}'", full));
+  const std::size_t dot = full.find('.');
+  const bool has_both = dot != std::string::npos && dot > 0 && dot + 1 < full.size();
+  if (!has_both || full.find('=') != std::string::npos)
+    return Error{ErrorKind::usage, fmt::format("'{}' is no name of a setting", full), "", 0, "ENTRY.SETTING"};
   return parse_override(full + "=" + value);
 }
 
 Result<void> set(afterglow_stack* stack, const char* function, afterglow_string name, const std::string& value) {
   AFTERGLOW_TRY(Backend * backend, backend_of(stack, function));
   AFTERGLOW_TRY(const Override one, override_of(name, value));
-  auto done = backend->set(one);
-  if (done) return done;
-  // The engine speaks to users of the command line.
-  Error error = std::move(done).error();
-  constexpr std::string_view kOption = "--set ";
-  if (error.message.starts_with(kOption)) error.message.erase(0, kOption.size());
-  return error;
+  return backend->set(one);
 }
 
 Result<std::string> number(double value) {
   if (!std::isfinite(value)) return usage("settings must be finite");
   return fmt::format("{:.17g}", value);
+}
+
+SettingValue value_of(double number, SettingType type) { return {.type = type, .number = {number}, .choice = {}}; }
+SettingValue value_of(const std::string& choice, SettingType type) {
+  return {.type = type, .number = {}, .choice = choice};
+}
+
+/// A mask that is made of more than a number is a text.
+SettingValue value_of(const EntryMask* mask) {
+  if (!mask) return value_of(1, SettingType::number);
+  if (mask->kind == EntryMask::Kind::number) return value_of(mask->number, SettingType::number);
+  return value_of(mask->text(), SettingType::text);
+}
+
+/// What an entry has under a name that can be set: a setting of its effect goes before what all entries have.
+std::optional<SettingValue> value_of(const StackEntry& entry, const std::string& name) {
+  for (const auto& [setting, value] : entry.settings)
+    if (setting == name) return value;
+  if (name == "enabled") return value_of(entry.enabled ? 1 : 0, SettingType::boolean);
+  if (name == "order") return value_of(entry.order, SettingType::integer);
+  if (name == "at") return value_of(entry.at, SettingType::enumeration);
+  if (name == "opacity") return value_of(entry.opacity, SettingType::number);
+  if (name == "blend") return value_of(entry.blend, SettingType::enumeration);
+  if (name == "mask") return value_of(entry.mask.get());
+  if (!entry.mask) return {};
+  for (const EntryMask* part : entry.mask->parts())
+    for (const auto& [setting, value] : part->settings)
+      if (name == part->part + "." + setting) return value;
+  return {};
 }
 
 /// Errors (usage): unknown entry or setting, with the nearest.
@@ -42,6 +68,7 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
   AFTERGLOW_TRY(const Override parts, override_of(name, "0"));
   const auto& entries = backend->entries();
   std::vector<std::string> names;
+  names.reserve(entries.size());
   for (const auto& entry : entries) names.push_back(entry.name);
   const auto entry = std::ranges::find(entries, parts.entry, &StackEntry::name);
   if (entry == entries.end())
@@ -51,16 +78,8 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
                  0,
                  join(names),
                  nearest_name(parts.entry, names)};
-  if (parts.setting == "enabled")
-    return SettingValue{.type = SettingType::boolean, .number = {entry->enabled ? 1.0 : 0.0}, .choice = {}};
-  if (parts.setting == "order")
-    return SettingValue{.type = SettingType::integer, .number = {static_cast<double>(entry->order)}, .choice = {}};
-  if (parts.setting == "at") return SettingValue{.type = SettingType::enumeration, .number = {}, .choice = entry->at};
-  names.clear();
-  for (const auto& [setting, value] : entry->settings) {
-    if (setting == parts.setting) return value;
-    names.push_back(setting);
-  }
+  if (auto value = value_of(*entry, parts.setting)) return *std::move(value);
+  names = backend->preset().setting_names(*entry);
   return Error{ErrorKind::usage,
                fmt::format("effect '{}' has no setting '{}'", entry->effect, parts.setting),
                "",
@@ -121,7 +140,25 @@ afterglow_error* afterglow_stack_set_numbers(afterglow_stack* stack, afterglow_s
 afterglow_error* afterglow_stack_unset(afterglow_stack* stack, afterglow_string name) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_unset"));
+    if (!is_given(name)) return backend->unset({});
+    if (name.size == 0) return usage("afterglow_stack_unset: the name is empty; NULL means all settings");
     return backend->unset(text_of(name));
+  });
+}
+
+afterglow_error* afterglow_stack_arguments(const afterglow_stack* stack, afterglow_text** out) {
+  return call([&]() -> Result<void> {
+    AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_arguments"));
+    return give(arguments_document(*backend), out, "afterglow_stack_arguments");
+  });
+}
+
+afterglow_error* afterglow_stack_set_argument(afterglow_stack* stack, afterglow_string name, afterglow_string value) {
+  return call([&]() -> Result<void> {
+    AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_set_argument"));
+    AFTERGLOW_TRY(const ArgumentValue one, parse_argument(text_of(name) + "=" + text_of(value)));
+    if (one.name != text_of(name)) return usage(fmt::format("'{}' is no name of an argument", text_of(name)));
+    return backend->set_argument(one.name, is_given(value) ? std::optional(one.value) : std::nullopt);
   });
 }
 
@@ -148,8 +185,8 @@ afterglow_error* afterglow_stack_get_boolean(const afterglow_stack* stack, after
 afterglow_error* afterglow_stack_get_text(const afterglow_stack* stack, afterglow_string name, afterglow_text** out) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(const SettingValue value, value_of(stack, "afterglow_stack_get_text", name));
-    if (value.type != SettingType::enumeration && value.type != SettingType::file)
-      return wrong_type(name, "choice or file");
+    if (value.type != SettingType::enumeration && value.type != SettingType::file && value.type != SettingType::text)
+      return wrong_type(name, "choice, file or text");
     return give(value.choice, out, "afterglow_stack_get_text");
   });
 }

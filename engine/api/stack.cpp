@@ -2,6 +2,8 @@
 // Stacks of the C interface: made, run, reloaded, asked.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "api/documents.h"
 #include "api/handles.h"
 #include "core/paths.h"
@@ -13,11 +15,33 @@ Result<Backend*> backend_of(const afterglow_stack* stack, const char* function) 
   return stack->backend.get();
 }
 
+namespace {
+
+/// Errors (usage): numbers that no frame has.
+Result<void> check_frame(const afterglow_frame& frame) {
+  const auto check = [](const char* name, double value, bool positive) -> Result<void> {
+    if (std::isfinite(value) && (!positive || value > 0)) return {};
+    Error error = usage(fmt::format("afterglow_frame: {} is {:g}", name, value));
+    error.allowed = positive ? "finite numbers above 0" : "finite numbers";
+    return error;
+  };
+  AFTERGLOW_CHECK(check("number", frame.number, false));
+  AFTERGLOW_CHECK(check("time", frame.time, false));
+  AFTERGLOW_CHECK(check("fps", frame.fps, true));
+  AFTERGLOW_CHECK(check("step", frame.step, true));
+  if (frame.has_position)
+    for (const double coordinate : frame.position) AFTERGLOW_CHECK(check("position", coordinate, false));
+  return {};
+}
+
+}  // namespace
+
 Result<BuildContext> context_of(const afterglow_frame* given, Size size) {
   afterglow_frame frame = afterglow_frame_default();
   if (given) {
     AFTERGLOW_TRY(frame, take(given, frame, "afterglow_frame"));
   }
+  AFTERGLOW_CHECK(check_frame(frame));
   BuildContext context;
   context.size = size;
   context.frame = frame.number;
@@ -47,10 +71,14 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (given.follow && is_given(given.preset_text))
     return usage("afterglow_stack_options: a preset_text cannot be followed");
   if (given.path_count > 0 && !given.paths) return usage("afterglow_stack_options: paths is NULL");
+  if (given.argument_count > 0 && !given.arguments) return usage("afterglow_stack_options: arguments is NULL");
   if (!(given.max_error >= 0)) return usage("afterglow_stack_options: max_error must not be negative");
 
   BackendOptions out;
   for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(text_of(given.paths[i]));
+  for (std::size_t i = 0; i < given.argument_count; ++i) {
+    AFTERGLOW_TRY(out.stack.preset.arguments.emplace_back(), parse_argument(text_of(given.arguments[i])));
+  }
   out.stack.preset.installation = text_of(given.installation);
   if (is_given(given.preset_text)) {
     out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";
@@ -169,8 +197,7 @@ afterglow_error* afterglow_stack_prepare(afterglow_stack* stack, const afterglow
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_prepare"));
     AFTERGLOW_TRY(const auto given, take(shape, afterglow_shape_default(), "afterglow_shape"));
     const Size size{given.width, given.height};
-    if (size.width < 1 || size.height < 1)
-      return usage(fmt::format("afterglow_shape: {}×{} pixels; sides start at 1", size.width, size.height));
+    if (auto fits = check_size(size); !fits) return usage("afterglow_shape: " + fits.error().message);
     Shape wanted;
     AFTERGLOW_TRY(wanted.context, context_of(frame, size));
     AFTERGLOW_TRY(wanted.region, region_of(given.region, size));

@@ -98,12 +98,15 @@ Error missing_file(const fs::path& path) {
 }
 
 bool is_file(const fs::path& path, FileRecord* record) {
+  if (record && record->keeps(path)) return true;
   if (record) record->note(path, FileProbe::Kind::existence);
   std::error_code ec;
   return fs::is_regular_file(path, ec);
 }
 
 Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecord* record) {
+  if (record)
+    if (auto text = record->kept(path)) return *std::move(text);
   FileRecord::Reading reading(record, path);
   std::error_code ec;
   const auto status = fs::status(path, ec);

@@ -15,7 +15,7 @@ namespace afterglow {
 class FileRecord;  // core/file_record.h
 
 /// The whole file. Errors: io (missing, folder, unreadable, larger than `limit` bytes).
-/// `record` takes the look down.
+/// `record` takes the look down; one that keeps gives what was read before.
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
                               FileRecord* record = nullptr);
 

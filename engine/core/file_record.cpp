@@ -18,6 +18,7 @@ using Kind = FileProbe::Kind;
 
 constexpr std::uint64_t kNothing = 1, kFile = 2, kFolder = 3, kOther = 4, kUnreadable = 5;  // first word of a Hash
 constexpr std::size_t kLargest = 64u << 20;     // bytes that are read to compare contents; larger files by their stamps
+constexpr std::size_t kMostKept = 64u << 20;    // bytes
 constexpr std::int64_t kYoung = 2'000'000'000;  // ns; FAT counts in steps of two seconds
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
@@ -100,6 +101,32 @@ fs::path whole_path(const fs::path& path) {
 
 FileProbe inspect(const fs::path& path, Kind kind) { return {kind, look(path, kind), {}}; }
 
+std::shared_ptr<FileRecord> FileRecord::keeping() {
+  auto record = std::make_shared<FileRecord>();
+  record->keeps_ = true;
+  return record;
+}
+
+std::optional<std::string> FileRecord::kept(const fs::path& path) const {
+  if (!keeps_) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const auto known = kept_.find(whole_path(path));
+  return known == kept_.end() ? std::nullopt : std::optional(known->second);
+}
+
+bool FileRecord::keeps(const fs::path& path) const {
+  if (!keeps_) return false;
+  const std::lock_guard lock(mutex_);
+  return kept_.contains(whole_path(path));
+}
+
+void FileRecord::keep(const fs::path& path, std::string_view content) {
+  if (!keeps_) return;
+  const std::lock_guard lock(mutex_);
+  if (content.size() > kMostKept - kept_bytes_ || !kept_.emplace(whole_path(path), content).second) return;
+  kept_bytes_ += content.size();
+}
+
 void FileRecord::add(const fs::path& path, const FileProbe& look) {
   const std::lock_guard lock(mutex_);
   const auto [known, fresh] = probes_.emplace(whole_path(path), look);
@@ -121,7 +148,10 @@ FileRecord::Reading::Reading(FileRecord* record, const fs::path& path) : record_
 }
 
 void FileRecord::Reading::done(std::string_view content) {
-  if (record_) record_->add(path_, {Kind::content, hash_text(content), stamp_});
+  if (record_) {
+    record_->add(path_, {Kind::content, hash_text(content), stamp_});
+    record_->keep(path_, content);
+  }
   record_ = nullptr;
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -35,9 +36,17 @@ using FileProbes = std::map<std::filesystem::path, FileProbe>;
 /// first that says most counts. Thread-safe.
 class FileRecord {
  public:
+  /// One that keeps what was read: who reads a file again gets the same, whatever lies on disk by now. Files that were
+  /// not there are looked for again, and what is beyond 64 MiB is read again.
+  static std::shared_ptr<FileRecord> keeping();
+
   void note(const std::filesystem::path& path, FileProbe::Kind kind);
   /// What was looked at so far. The same value as the last time while nothing was added.
   std::shared_ptr<const FileProbes> looks() const;
+
+  /// The content that was kept. None: it was not read, or is not kept.
+  std::optional<std::string> kept(const std::filesystem::path& path) const;
+  bool keeps(const std::filesystem::path& path) const;
 
   /// A content that is about to be read; `done` with what was found. Read errors are looks too. Null: notes nothing.
   class Reading {
@@ -56,8 +65,12 @@ class FileRecord {
 
  private:
   void add(const std::filesystem::path& path, const FileProbe& look);
+  void keep(const std::filesystem::path& path, std::string_view content);
   mutable std::mutex mutex_;
   FileProbes probes_;
+  bool keeps_ = false;
+  std::map<std::filesystem::path, std::string> kept_;
+  std::size_t kept_bytes_ = 0;
   mutable std::shared_ptr<const FileProbes> taken_;  ///< null: something was added since
 };
 

@@ -183,6 +183,11 @@ Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs
   if (is_pack)
     return Error{ErrorKind::script, names.empty() ? "the pack holds no preset" : "the pack holds several presets",
                  given, 0, names.empty() ? "" : "--path " + given + " and one of: " + join(names)};
+  if (!is_installation(path.installation))
+    return Error{ErrorKind::script,
+                 fmt::format("is no installation of Afterglow, where the preset '{}' was looked for", given),
+                 path.installation.empty() ? "share/afterglow" : path.installation.string(), 0,
+                 "a folder with scripts/ and shaders/ (AFTERGLOW_HOME)"};
   // A file that lies there and only lacks its ending is what was meant.
   const bool beside = fs::exists(given + ".lua", ec);
   return Error{ErrorKind::script, fmt::format("there is no preset '{}'", given),       "", 0,

@@ -62,7 +62,7 @@ SearchPath search_path_for(const std::filesystem::path& preset, const std::vecto
 
 /// The preset that a user means: a file as it is; a pack (folder or zip) that holds one preset or one of its own name;
 /// the name of a preset in `extra`, AFTERGLOW_PATH or the installation. A file that does not exist comes back as it is.
-/// Errors: script (unknown name, with the nearest; a pack with several presets or none, or one that is refused).
+/// Errors: script (unknown name, with the nearest; no installation; a pack that is refused, or with several presets).
 Result<std::filesystem::path> find_preset_file(const std::string& given,
                                                const std::vector<std::filesystem::path>& extra,
                                                const std::filesystem::path& installation = {});

@@ -29,8 +29,10 @@ namespace {
 
 constexpr std::size_t kMaxArguments = 256;
 
-void fail_or_leave_out(const Runtime& runtime, const Error& error) {
-  if (!runtime.leave_out_unfit || !runtime.box->diagnostics) throw ScriptError{error};
+/// `given` is one of Runtime::given_arguments.
+void fail_or_leave_out(const Runtime& runtime, const ArgumentValue& given, const Error& error) {
+  const bool must_fit = runtime.last_argument_must_fit && &given == &runtime.given_arguments.back();
+  if (!runtime.leave_out_unfit || must_fit || !runtime.box->diagnostics) throw ScriptError{error};
   warn_left_out(*runtime.box->diagnostics, error);
 }
 
@@ -51,7 +53,7 @@ const PresetArgument& argument_of(Runtime& runtime, SettingSchema schema) {
     if (given.name != argument.schema.name) continue;
     auto value = parse_value_of(given.value, argument.schema, "--arg " + given.name);
     if (!value) {
-      fail_or_leave_out(runtime, value.error());
+      fail_or_leave_out(runtime, given, value.error());
       continue;
     }
     argument.value = *value;
@@ -85,8 +87,9 @@ void check_arguments(const Runtime& runtime) {
     if (std::ranges::find(names, given.name) != names.end()) continue;
     const std::string what =
         names.empty() ? "the preset declares no arguments (fx.args)" : "the preset declares no argument of this name";
-    fail_or_leave_out(runtime, {ErrorKind::usage, fmt::format("--arg {}: {}", given.name, what), "", 0, join(names),
-                                nearest_name(given.name, names)});
+    fail_or_leave_out(runtime, given,
+                      {ErrorKind::usage, fmt::format("--arg {}: {}", given.name, what), "", 0, join(names),
+                       nearest_name(given.name, names)});
   }
 }
 

@@ -203,15 +203,15 @@ void warn_left_out(Diagnostics& diagnostics, Error error) {
   error.message += "; it is left out";
   std::string text = error.text();
   if (text.starts_with("error: ")) text.erase(0, 7);
-  diagnostics.warn(text);
+  diagnostics.warn_once(text, text);
 }
 
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             Runtime& runtime, Diagnostics* left_out) {
+                             Runtime& runtime, Diagnostics* left_out, bool last_must_fit) {
   for (const auto& given : overrides) {
     auto applied = apply_everywhere(entries, given, runtime);
     if (applied) continue;
-    if (!left_out) return applied;
+    if (!left_out || (last_must_fit && &given == &overrides.back())) return applied;
     warn_left_out(*left_out, std::move(applied).error());
   }
   return {};

@@ -10,11 +10,11 @@
 namespace afterglow::script {
 
 /// Errors (usage): unknown entry or setting (with the nearest), values that the setting does not allow. With
-/// `left_out` they are its warnings, and what they are about is left out.
+/// `left_out` they are its warnings, and what they are about is left out, but for the last one if that must fit.
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             Runtime& runtime, Diagnostics* left_out = nullptr);
+                             Runtime& runtime, Diagnostics* left_out = nullptr, bool last_must_fit = false);
 
-/// The warning that something from the command line is left out.
+/// The warning that something from the command line is left out; once.
 void warn_left_out(Diagnostics& diagnostics, Error error);
 
 /// Keys of an entry that --set knows besides settings.

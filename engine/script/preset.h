@@ -95,12 +95,16 @@ struct ScriptLimits {
   std::shared_ptr<const std::atomic<std::chrono::steady_clock::rep>> until = {};
 };
 
+/// What is an error all the same where other values that do not fit are left out.
+enum class MustFit { nothing, last_override, last_argument };
+
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
   std::filesystem::path installation;        ///< empty: find_installation()
   std::vector<Override> overrides;
   std::vector<ArgumentValue> arguments;  ///< --arg
   bool leave_out_unfit = false;          ///< overrides and arguments that do not fit are warned about, and no errors
+  MustFit must_fit = MustFit::nothing;   ///< with that
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   /// Takes down what is looked at, also by a preset that fails to load. Null: the preset's own (Build::files).

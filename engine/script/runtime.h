@@ -112,6 +112,7 @@ struct Runtime {
   std::vector<PresetArgument> arguments;       ///< declared so far
   std::vector<ArgumentValue> given_arguments;  ///< --arg
   bool leave_out_unfit = false;                ///< PresetOptions: of arguments too
+  bool last_argument_must_fit = false;         ///< with that
   std::vector<DeclaredCurve> curves;
   std::vector<DeclaredVolume> volumes;
   Assets assets;

@@ -59,6 +59,9 @@ TEST_F(Example, PicturesInMemory) {
   const Outcome wrong = run(EXAMPLE_MEMORY, {"neon_night", "less.ppm", "bloom.intensty=0"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'intensity'?"));
+  const Outcome full = run(EXAMPLE_MEMORY, {"neon_night", "/dev/full"});
+  EXPECT_EQ(full.exit_code, 4);
+  EXPECT_THAT(full.err, HasSubstr("/dev/full"));
 }
 
 TEST_F(Example, CppHostsFollowTheirPreset) {

@@ -124,10 +124,17 @@ def test_settings(stack):
     np.testing.assert_array_equal(stack.run(one)[0, 0], (3, 1.5, 0.75))
     stack.set("gain.off", True)
     np.testing.assert_array_equal(stack.run(one), one)
+    stack.set("gain.off", np.bool_(False))
+    np.testing.assert_array_equal(stack.run(one)[0, 0], (3, 1.5, 0.75))
     stack.unset("gain.off")
     stack.set("gain.tint", "#ffffff")
     stack.set("gain.amount", np.float32(5))
     np.testing.assert_array_equal(stack.run(one), 5 * one)
+    stack.set("gain.opacity", 0.5)
+    assert [stack.get("gain." + name) for name in ("opacity", "blend", "mask", "enabled")] == [0.5, "normal", 1, True]
+    with pytest.raises(afterglow.UsageError, match="empty"):
+        stack.unset("")
+    assert stack.get("gain.opacity") == 0.5
     stack.unset()
     np.testing.assert_array_equal(stack.run(one), 2 * one)
     [entry] = stack.settings
@@ -136,6 +143,30 @@ def test_settings(stack):
     assert amount["default"] == 1 and amount["max"] == 1e6 and amount["doc"] == "Factor."
     assert stack.explain()["entries"][0]["state"] == "runs"
     assert stack.report()["kernels"] == ["gain.gain"]
+
+
+def test_arguments(folder, device):
+    (folder / "look.lua").write_text(
+        'local fx = require "afterglow"\n'
+        "local args = fx.args { strength = fx.float { default = 2, min = 0, max = 9, doc = '.' },\n"
+        "  on = fx.bool { default = false, doc = '.' }, tint = fx.color { default = { 1, 1, 1 }, doc = '.' },\n"
+        "  way = fx.enum { 'post_process', 'after_post_process', default = 'post_process', doc = '.' } }\n"
+        "return fx.stack { fx.gain { amount = args.strength, off = args.on, tint = args.tint, at = args.way } }\n"
+    )
+    args = {"strength": np.float32(3), "on": np.bool_(True), "tint": (1, 0.5, 0), "way": "after_post_process"}
+    stack = afterglow.Stack(folder / "look.lua", device=device, args=args)
+    values = [stack.get("gain." + name) for name in ("amount", "off", "tint", "at")]
+    assert values == [3, True, [1, 0.5, 0], "after_post_process"]
+    assert {one["name"]: one["given"] for one in stack.arguments} == dict.fromkeys(args, True)
+    stack.set_argument("strength", 4)
+    assert stack.get("gain.amount") == 4
+    stack.set_argument("strength", None)
+    assert stack.get("gain.amount") == 2
+    with pytest.raises(afterglow.UsageError) as caught:
+        stack.set_argument("strenght", 1)
+    assert caught.value.nearest == "strength"
+    with pytest.raises(TypeError, match="strength must be"):
+        afterglow.Stack(folder / "look.lua", device=device, args={"strength": {}})
 
 
 def test_errors_name_file_and_line(folder, device, stack):
@@ -169,6 +200,19 @@ def test_wrong_arguments(stack):
         out = picture()
         out.flags.writeable = False
         stack.run(picture(), out=out)
+    for call, told in (
+        (lambda: afterglow.Stack("neon_night", device="auto"), "device must be an afterglow.Device, not str"),
+        (lambda: afterglow.Stack("neon_night", max_error="small"), "max_error must be a number, not str"),
+        (lambda: afterglow.Stack("neon_night", follow="no"), "follow must be a bool, not str"),
+        (lambda: afterglow.Stack("neon_night", text=3), "text must be a str, not int"),
+        (lambda: stack.run(picture(), frame=[1]), "frame must be a number, not list"),
+        (lambda: stack.run(picture(), position=1), r"position must be \(x, y, z\), not int"),
+        (lambda: stack.run(picture(), region=(1, 2)), "region must be .*, not tuple"),
+        (lambda: stack.set("gain.amount", {}), "gain.amount must be a bool, a number, a str or some numbers, not dict"),
+        (lambda: stack.set("gain.amount", None), "not NoneType"),
+    ):
+        with pytest.raises(TypeError, match=told):
+            call()
     with pytest.raises(ValueError, match="allowed: auto, fp32, fp16"):
         afterglow.Stack("neon_night", precision="double")
 

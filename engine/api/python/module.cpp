@@ -32,8 +32,11 @@ PYBIND11_MODULE(_afterglow, module) {
       .def("run", &PyStack::run, py::arg("source"), "Runs the stack on a picture; returns the result.")
       .def("set", &PyStack::set, py::arg("name"), py::arg("value"), "Sets ENTRY.SETTING.")
       .def("unset", &PyStack::unset, py::arg("name") = py::none(), "Back to what the preset says.")
+      .def("set_argument", &PyStack::set_argument, py::arg("name"), py::arg("value"),
+           "Gives an argument of the preset a value; None: its default.")
       .def("get", &PyStack::get, py::arg("name"), "The value of ENTRY.SETTING in the last frame.")
       .def_property_readonly("settings", &PyStack::settings, "Entries with their settings.")
+      .def_property_readonly("arguments", &PyStack::arguments, "What the preset declares by fx.args.")
       .def("explain", &PyStack::explain, "How the settings of the last frame came about.")
       .def("report", &PyStack::report, "What ran in the last frame, what did not and why, times.")
       .def("reload", &PyStack::reload, py::arg("text") = py::none(), "Reads the files again, or takes another text.")

@@ -4,11 +4,33 @@
 #include <pybind11/stl.h>
 
 #include <set>
+#include <type_traits>
+#include <variant>
 
 namespace afterglow::python {
 namespace {
 
 py::object from_json(const std::string& text) { return py::module_::import("json").attr("loads")(text); }
+
+/// What Python calls a wrong type, it does: pybind11 makes a RuntimeError of it.
+template <class T>
+T cast(const py::object& value, const std::string& name, const char* what) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(name + " must be " + what + ", not " +
+                         py::type::of(value).attr("__name__").cast<std::string>());
+  }
+}
+template <class T>
+constexpr const char* kWhat = std::is_same_v<T, bool>   ? "a bool"
+                              : std::is_arithmetic_v<T> ? "a number"
+                                                        : "a str";
+
+bool is_bool(const py::handle& value) {
+  return py::isinstance<py::bool_>(value) || py::isinstance(value, py::module_::import("numpy").attr("bool_"));
+}
+bool is_number(const py::handle& value) { return PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr()); }
 
 /// Options by name, each asked for once; what nobody asked for is unknown.
 class Options {
@@ -22,7 +44,7 @@ class Options {
   template <class T>
   T take(const char* name, T otherwise) {
     const py::object value = take(name);
-    return value.is_none() ? otherwise : value.cast<T>();
+    return value.is_none() ? otherwise : cast<T>(value, name, kWhat<T>);
   }
   void finish() const {
     for (const auto& [key, value] : given_)
@@ -87,9 +109,21 @@ std::string path_text(const py::handle& path) {
 
 afterglow_rect region_of(const py::object& region) {
   if (region.is_none()) return {0, 0, 0, 0};
-  const auto [x, y, width, height] = region.cast<std::tuple<int, int, int, int>>();
+  const auto [x, y, width, height] = cast<std::tuple<int, int, int, int>>(region, "region", "(x, y, width, height)");
   if (width < 1 || height < 1) throw py::value_error("region is (x, y, width, height); sides start at 1");
   return {x, y, width, height};
+}
+
+/// As the command line writes it.
+std::string argument_text(const std::string& name, const py::handle& value) {
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
+  if (is_number(value)) return py::repr(py::float_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  std::string text;
+  for (const double number : cast<std::vector<double>>(py::reinterpret_borrow<py::object>(value), name,
+                                                       "a bool, a number, a str or some numbers"))
+    text += (text.empty() ? "{" : ", ") + py::repr(py::float_(number)).cast<std::string>();
+  return text + "}";
 }
 
 }  // namespace
@@ -128,6 +162,11 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   if (const py::object folder = options.take("installation"); !folder.is_none())
     wanted.installation = path_text(folder);
   if (const py::object file = options.take("calibration"); !file.is_none()) wanted.calibration = path_text(file);
+  if (const py::object args = options.take("args"); !args.is_none())
+    for (const auto& [key, value] : cast<py::dict>(args, "args", "a dict")) {
+      const std::string name = py::str(key);
+      wanted.arguments.push_back(name + "=" + argument_text(name, value));
+    }
   wanted.precision = precision_of(options.take("precision", std::string("auto")));
   wanted.max_error = options.take("max_error", 0.0);
   wanted.max_memory = options.take("max_memory", std::uint64_t{0});
@@ -138,7 +177,7 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   wanted.wake = wake_of(options.take("wake"));
   options.finish();
   device_ = device.is_none() ? std::make_shared<PyDevice>("auto", false, std::nullopt, py::none())
-                             : device.cast<std::shared_ptr<PyDevice>>();
+                             : cast<std::shared_ptr<PyDevice>>(device, "device", "an afterglow.Device");
   const std::string file = preset.is_none() ? "" : path_text(preset);
   const py::gil_scoped_release others;
   stack_ = std::make_unique<Stack>(device_->get(), file, std::move(wanted));
@@ -187,7 +226,7 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   frame.step = options.take("step", frame.step);
   frame.restart = options.take("restart", false);
   if (const py::object position = options.take("position"); !position.is_none()) {
-    const auto [x, y, z] = position.cast<std::tuple<double, double, double>>();
+    const auto [x, y, z] = cast<std::tuple<double, double, double>>(position, "position", "(x, y, z)");
     frame.has_position = true;
     frame.position[0] = x, frame.position[1] = y, frame.position[2] = z;
   }
@@ -200,7 +239,7 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
 }
 
 void PyStack::set(const std::string& name, const py::object& value) {
-  if (py::isinstance<py::bool_>(value)) {
+  if (is_bool(value)) {
     const bool on = value.cast<bool>();
     return alone([&] { stack_->set(name, on); });
   }
@@ -208,16 +247,22 @@ void PyStack::set(const std::string& name, const py::object& value) {
     const auto text = value.cast<std::string>();
     return alone([&] { check(afterglow_stack_set(stack_->get(), to_view(name), to_view(text))); });
   }
-  if (PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr())) {
-    const auto number = value.cast<double>();
+  if (is_number(value)) {
+    const auto number = cast<double>(value, name, "a number");
     return alone([&] { stack_->set(name, number); });
   }
-  const auto numbers = value.cast<std::vector<double>>();
+  const auto numbers = cast<std::vector<double>>(value, name, "a bool, a number, a str or some numbers");
   alone([&] { stack_->set(name, numbers); });
 }
 
 void PyStack::unset(const std::optional<std::string>& name) {
   alone([&] { name ? stack_->unset(*name) : stack_->unset_all(); });
+}
+
+void PyStack::set_argument(const std::string& name, const py::object& value) {
+  if (value.is_none()) return alone([&] { stack_->unset_argument(name); });
+  const std::string text = argument_text(name, value);
+  alone([&] { stack_->set_argument(name, text); });
 }
 
 py::object PyStack::get(const std::string& name) const {
@@ -228,12 +273,31 @@ py::object PyStack::get(const std::string& name) const {
     for (const auto& one : entry["settings"])
       if (one["name"].cast<std::string>() == setting) return one["value"];
   }
-  double none = 0;
-  alone([&] { check(afterglow_stack_get_number(stack_->get(), to_view(name), &none)); });  // says what there is
-  return py::none();
+  return get_plainly(name);
+}
+
+/// What is no setting of an effect ("glow.opacity", "glow.mask.luma.from"), of whatever type.
+py::object PyStack::get_plainly(const std::string& name) const {
+  using Value = std::variant<bool, double, std::vector<double>, std::string>;
+  const auto is_so = [](afterglow_error* error) {
+    afterglow_error_free(error);
+    return !error;
+  };
+  return py::cast(alone([&]() -> Value {
+    bool on = false;
+    if (is_so(afterglow_stack_get_boolean(stack_->get(), to_view(name), &on))) return on;
+    std::vector<double> numbers(4);
+    std::size_t count = 0;
+    if (!is_so(afterglow_stack_get_numbers(stack_->get(), to_view(name), numbers.data(), numbers.size(), &count)))
+      return stack_->get_text(name);  // or its error, which says what there is
+    numbers.resize(count);
+    if (count == 1) return numbers[0];
+    return numbers;
+  }));
 }
 
 py::object PyStack::settings() const { return json(&Stack::settings); }
+py::object PyStack::arguments() const { return json(&Stack::arguments); }
 py::object PyStack::explain() const { return json(&Stack::explain); }
 py::object PyStack::report() const { return json(&Stack::report); }
 

@@ -33,8 +33,10 @@ class PyStack {
   py::array run(const py::object& source, const py::kwargs& options);
   void set(const std::string& name, const py::object& value);
   void unset(const std::optional<std::string>& name);
+  void set_argument(const std::string& name, const py::object& value);
   py::object get(const std::string& name) const;
   py::object settings() const;
+  py::object arguments() const;
   py::object explain() const;
   py::object report() const;
   void reload(const std::optional<std::string>& text);
@@ -44,6 +46,7 @@ class PyStack {
  private:
   template <class Work>
   auto alone(Work work) const;
+  py::object get_plainly(const std::string& name) const;
   py::object json(std::string (Stack::*function)() const) const;
 
   std::shared_ptr<PyDevice> device_;

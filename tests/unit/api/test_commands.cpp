@@ -36,6 +36,43 @@ TEST_F(CommandsTest, TheOrderOfCallsIsKept) {
             AFTERGLOW_ERROR_USAGE);
 }
 
+TEST_F(CommandsTest, WhatIsPreparedOutlastsFailures) {
+  look("fx.fog { required = true }, fx.fog {}");
+  afterglow_stack_options options = recording();
+  options.max_memory = 1 << 20;
+  const StackPtr stack = this->stack(options);
+  afterglow_shape wanted = shape();
+  wanted.depth = true;
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+
+  look("fx.fog {");
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_set_number(stack.get(), str("fog.amount"), 1)));
+  wanted.depth = false;
+  const ErrorPtr required(afterglow_stack_prepare(stack.get(), &wanted, nullptr));
+  EXPECT_THAT(text_of(required.get()), HasSubstr("no depth input"));
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_prepare(stack.get(), nullptr, nullptr)));
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+  const ErrorPtr unbound(afterglow_stack_record(stack.get(), reinterpret_cast<VkCommandBuffer>(1)));
+  EXPECT_THAT(text_of(unbound.get()), HasSubstr("afterglow_stack_bind first"));
+
+  // What does not fit the device's memory takes the place of what was there all the same.
+  wanted = shape();
+  wanted.depth = true;
+  wanted.width = wanted.height = 2048;
+  const ErrorPtr large(afterglow_stack_prepare(stack.get(), &wanted, nullptr));
+  EXPECT_EQ(afterglow_error_get_kind(large.get()), AFTERGLOW_ERROR_IO);
+  EXPECT_FALSE(afterglow_stack_runs(stack.get()));
+
+  look("fx.gain { amount = 2 }");
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  wanted = shape();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FALSE(afterglow_stack_runs(stack.get())) << "another stack wants to be prepared";
+}
+
 TEST_F(CommandsTest, AStackIsForOneUse) {
   const StackPtr memory = this->stack();
   const afterglow_bindings bindings = afterglow_bindings_default();

@@ -5,7 +5,16 @@
 namespace afterglow::test {
 namespace {
 
-using ErrorTest = ApiTest;
+class ErrorTest : public ApiTest {
+ protected:
+  StackPtr prepared(const afterglow_stack_options& options) const {
+    StackPtr out = stack(options);
+    afterglow_shape shape = afterglow_shape_default();
+    shape.width = shape.height = 4;
+    EXPECT_TRUE(fine(afterglow_stack_prepare(out.get(), &shape, nullptr)));
+    return out;
+  }
+};
 
 TEST_F(ErrorTest, NamesKindFileLineAllowedAndNearest) {
   write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.gain { amonut = 2 },\n}\n");
@@ -57,6 +66,49 @@ TEST_F(ErrorTest, MissingArgumentsAreUsageErrors) {
   for (const auto& error : errors) EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
   EXPECT_EQ(out, nullptr);
   EXPECT_EQ(text, nullptr);
+}
+
+TEST_F(ErrorTest, MessagesSpeakOfTheLibrary) {
+  const StackPtr stack = this->stack();
+  for (const char* name : {"strength", "gain.", ".amount", "gain=2.amount", ""})
+    EXPECT_EQ(text_of(ErrorPtr(afterglow_stack_set_number(stack.get(), str(name), 0.5)).get()),
+              "error: '" + std::string(name) + "' is no name of a setting; allowed: ENTRY.SETTING");
+
+  look("fx.gain {}, fx.gain {}, fx.fog {}, fx.fog {}");
+  afterglow_stack_options options = listening();
+  options.max_memory = 1 << 20;
+  const StackPtr small = this->stack(options);
+  afterglow_shape shape = afterglow_shape_default();
+  shape.width = shape.height = 2048;
+  shape.depth = true;
+  const ErrorPtr memory(afterglow_stack_prepare(small.get(), &shape, nullptr));
+  EXPECT_THAT(text_of(memory.get()), testing::AllOf(HasSubstr("(max_memory)"), Not(HasSubstr("--"))));
+  ASSERT_TRUE(fine(afterglow_stack_set_number(small.get(), str("gain.amount"), 2)));
+  look("fx.fog {}");
+  ASSERT_TRUE(fine(afterglow_stack_reload(small.get(), afterglow_str(nullptr))));
+  EXPECT_THAT(messages_, testing::ElementsAre(testing::StartsWith("gain.amount: the stack has no entry 'gain'")));
+}
+
+TEST_F(ErrorTest, ReportsSpeakOfTheLibrary) {
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.reference = true;
+  EXPECT_EQ(json_of(afterglow_stack_report, prepared(options).get())["choice_from"], "reference");
+  options.reference = false;
+  options.precision = AFTERGLOW_PRECISION_FP32;
+  EXPECT_THAT(json_of(afterglow_stack_report, prepared(options).get())["choice_from"].get<std::string>(),
+              testing::EndsWith("; precision"));
+}
+
+TEST_F(ErrorTest, AnInstallationThatIsNoneIsTold) {
+  write("nothing/readme", "");
+  const std::string nowhere = file("nothing");
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.preset_file = str("neon_night");
+  options.installation = str(nowhere);
+  const ErrorPtr error = broken(options);
+  EXPECT_EQ(str(afterglow_error_get_file(error.get())), nowhere);
+  EXPECT_THAT(text_of(error.get()), HasSubstr("is no installation of Afterglow"));
+  EXPECT_THAT(text_of(error.get()), HasSubstr("neon_night"));
 }
 
 TEST_F(ErrorTest, StructuresOfOtherVersionsAreTaken) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Frames of a sequence, devices that go before their stacks, stacks on several threads.
+#include <functional>
+#include <limits>
 #include <thread>
 
 #include "fixture.h"
@@ -52,6 +54,30 @@ TEST_F(FrameTest, SettingsFollowTheFrame) {
   double amount = 0;
   ASSERT_TRUE(fine(afterglow_stack_get_number(stack.get(), str("gain.amount"), &amount)));
   EXPECT_EQ(amount, 6);
+}
+
+TEST_F(FrameTest, NumbersThatNoFrameHasAreRefused) {
+  const StackPtr stack = this->stack();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  const auto told = [&](const std::function<void(afterglow_frame&)>& change) {
+    afterglow_frame frame = afterglow_frame_default();
+    change(frame);
+    afterglow_shape shape = afterglow_shape_default();
+    shape.width = shape.height = 4;
+    const ErrorPtr error(afterglow_stack_prepare(stack.get(), &shape, &frame));
+    EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
+    return text_of(error.get());
+  };
+  EXPECT_EQ(told([&](auto& frame) { frame.number = nan; }),
+            "error: afterglow_frame: number is nan; allowed: finite numbers");
+  EXPECT_THAT(told([&](auto& frame) { frame.time = -infinite; }), HasSubstr("time is -inf"));
+  EXPECT_EQ(told([&](auto& frame) { frame.fps = 0; }),
+            "error: afterglow_frame: fps is 0; allowed: finite numbers above 0");
+  EXPECT_THAT(told([&](auto& frame) { frame.fps = -24; }), HasSubstr("fps is -24"));
+  EXPECT_THAT(told([&](auto& frame) { frame.step = 0; }), HasSubstr("step is 0"));
+  EXPECT_THAT(told([&](auto& frame) { frame.step = nan; }), HasSubstr("step is nan"));
+  EXPECT_THAT(told([&](auto& frame) { frame.has_position = true, frame.position[2] = nan; }),
+              HasSubstr("position is nan"));
 }
 
 TEST_F(FrameTest, EffectsLookBackAtTheFrameBefore) {

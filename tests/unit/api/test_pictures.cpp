@@ -218,5 +218,24 @@ TEST_F(PictureTest, HalfStorageKeepsAlphaExactly) {
   for (std::size_t i = 3; i < source.size(); i += 4) ASSERT_EQ(result[i], source[i]);
 }
 
+TEST_F(PictureTest, SidesHaveALimitWhateverRuns) {
+  for (const char* entries : {"fx.gain {}", ""}) {
+    look(entries);
+    const StackPtr stack = this->stack();
+    afterglow_shape shape = afterglow_shape_default();
+    shape.width = 100000;
+    shape.height = 10;
+    const ErrorPtr prepared(afterglow_stack_prepare(stack.get(), &shape, nullptr));
+    EXPECT_EQ(afterglow_error_get_kind(prepared.get()), AFTERGLOW_ERROR_USAGE);
+    EXPECT_THAT(text_of(prepared.get()), HasSubstr("100000×10 pixels; sides go from 1 to 16384"));
+    std::vector<float> row = pixels(16385, 1);
+    afterglow_run_info info = afterglow_run_info_default();
+    info.source = info.result = image(row, 16385, 1);
+    const ErrorPtr run(afterglow_stack_run(stack.get(), &info));
+    EXPECT_EQ(afterglow_error_get_kind(run.get()), AFTERGLOW_ERROR_USAGE);
+    EXPECT_THAT(text_of(run.get()), HasSubstr("image 'source': 16385×1 pixels"));
+  }
+}
+
 }  // namespace
 }  // namespace afterglow::test

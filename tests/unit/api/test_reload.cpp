@@ -72,6 +72,59 @@ TEST_F(ReloadTest, FilesAreReadAgainWhenAsked) {
   EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
 }
 
+TEST_F(ReloadTest, FilesAreReadWhenAskedAndNeverElse) {
+  write("parts.lua", "return { amount = 2 }\n");
+  const std::string preset =
+      "local fx, parts = require 'afterglow', require 'parts'\nreturn fx.stack { fx.gain { amount = parts.amount } }\n";
+  write("look.lua", preset);
+  const StackPtr stack = this->stack();
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+
+  // Edits that are not finished: a setting is set as if they were not there.
+  look("fx.gain { amount = ");
+  write("parts.lua", "return {");
+  write("effects/gain.lua", "return");
+  write("shaders/gain/gain.glsl", "vec4");
+  ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+  for (const char* name : {"look.lua", "parts.lua", "effects/gain.lua", "shaders/gain/gain.glsl"})
+    fs::remove(folder_ / name);
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 3)));
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.5f);
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+}
+
+TEST_F(ReloadTest, WhatThePresetNoLongerHasIsLeftOut) {
+  for (const bool follow : {false, true}) {
+    look("fx.gain { amount = 2 }, fx.trim {}");
+    write(
+        "effects/trim.lua",
+        "local fx = require 'afterglow'\nreturn fx.effect { name = 'trim', doc = '.', at = 'post_process', order = 1,\n"
+        "settings = { by = fx.float { default = 1, min = 0, max = 9, doc = '.' } },\n"
+        "build = function(g, s, source) return g:pass { shader = 'gain/gain', source = source, amount = s.by, tint = "
+        "{ 1, 1, 1 } } end }\n");
+    afterglow_stack_options options = listening();
+    messages_.clear();
+    options.follow = follow;
+    const StackPtr stack = this->stack(options);
+    ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("trim.by"), 2)));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+    look("fx.gain { amount = 2 }");
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+    for (const double amount : {3.0, 4.0, 5.0})
+      ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), amount)));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.5f);
+    EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("the stack has no entry 'trim'")));
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_set_number(stack.get(), str("trim.by"), 3)));
+    look("fx.gain { amount = 2 }, fx.trim {}");
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
+  }
+}
+
 TEST_F(ReloadTest, APresetMayBeAText) {
   afterglow_stack_options options = afterglow_stack_options_default();
   const std::string name = file("never_written.lua");
@@ -114,6 +167,7 @@ TEST_F(ReloadTest, EditsOfAFollowedFileAreTakenByUpdate) {
   const ErrorPtr error = update(stack, waker);
   EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_SCRIPT);
   EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
   EXPECT_TRUE(fine(afterglow_stack_update(stack.get(), nullptr)));
   EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
 

@@ -89,6 +89,55 @@ TEST_F(SettingsTest, EveryTypeGoesInAndOut) {
   EXPECT_FALSE(off);
 }
 
+TEST_F(SettingsTest, AnEmptyNameIsNotAll) {
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
+  const ErrorPtr error(afterglow_stack_unset(stack_.get(), str("")));
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_FLOAT_EQ(first_sample(), 1.5f);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), str("gain.tint"))));  // which was not set
+  EXPECT_FLOAT_EQ(first_sample(), 1.5f);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(), 1.0f);
+}
+
+TEST_F(SettingsTest, WhatEveryEntryHasGoesInAndOut) {
+  const auto number = [&](const char* name) {
+    double out = -1;
+    EXPECT_TRUE(fine(afterglow_stack_get_number(stack_.get(), str(name), &out)));
+    return out;
+  };
+  const auto text = [&](const char* name) {
+    afterglow_text* out = nullptr;
+    EXPECT_TRUE(fine(afterglow_stack_get_text(stack_.get(), str(name), &out)));
+    const std::string copy = str(afterglow_text_get(out));
+    afterglow_text_free(out);
+    return copy;
+  };
+  EXPECT_EQ(number("gain.opacity"), 1);
+  EXPECT_EQ(number("gain.order"), 10);
+  EXPECT_EQ(number("gain.mask"), 1);
+  EXPECT_EQ(text("gain.blend"), "normal");
+  EXPECT_EQ(text("gain.at"), "post_process");
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.opacity"), 0.5)));
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.mask"), 0.25)));
+  ASSERT_TRUE(fine(afterglow_stack_set_text(stack_.get(), str("gain.blend"), str("add"))));
+  EXPECT_EQ(number("gain.opacity"), 0.5);
+  EXPECT_EQ(number("gain.mask"), 0.25);
+  EXPECT_EQ(text("gain.blend"), "add");
+
+  look("fx.gain { amount = 2, mask = fx.mask.luma { from = 0.25 } }");
+  stack_ = stack();
+  EXPECT_EQ(number("gain.mask.luma.from"), 0.25);
+  EXPECT_EQ(text("gain.mask"), "luma");
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.mask.luma.from"), 0.5)));
+  EXPECT_EQ(number("gain.mask.luma.from"), 0.5);
+  double out = 0;
+  const ErrorPtr mask(afterglow_stack_get_number(stack_.get(), str("gain.mask"), &out));
+  EXPECT_THAT(text_of(mask.get()), HasSubstr("'gain.mask' is no number"));
+  const ErrorPtr near(afterglow_stack_get_number(stack_.get(), str("gain.opactiy"), &out));
+  EXPECT_EQ(str(afterglow_error_get_nearest(near.get())), "opacity");
+}
+
 TEST_F(SettingsTest, WhatIsNotAllowedIsRefusedAndChangesNothing) {
   ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
   const ErrorPtr name(afterglow_stack_set_number(stack_.get(), str("gain.amonut"), 1));
@@ -125,6 +174,69 @@ TEST_F(SettingsTest, ExplanationsTellWhereValuesComeFrom) {
   const auto report = json_of(afterglow_stack_report, stack_.get());
   EXPECT_EQ(report["kernels"], nlohmann::json{"gain.gain"});
   EXPECT_GT(report["milliseconds"]["script"], 0);
+}
+
+TEST_F(SettingsTest, ArgumentsOfThePresetAreGiven) {
+  const auto gain_of = [](const char* type) {
+    return std::string("local fx = require 'afterglow'\nlocal args = fx.args { strength = ") + type +
+           ", label = fx.enum { 'a', 'b', default = 'a', doc = 'Which.' } }\nreturn fx.stack { fx.gain { amount = "
+           "args.strength } }\n";
+  };
+  for (const bool follow : {false, true}) {
+    write("look.lua", gain_of("fx.float { default = 2, min = 0, max = 9, doc = 'How much.' }"));
+    afterglow_stack_options options = listening();
+    messages_.clear();
+    options.follow = follow;
+    const afterglow_string arguments[] = {afterglow_str("strength=4"), afterglow_str("label=b")};
+    options.arguments = arguments;
+    options.argument_count = 2;
+    stack_ = stack(options);
+    EXPECT_FLOAT_EQ(first_sample(), 2.0f);
+    const auto told = json_of(afterglow_stack_arguments, stack_.get());
+    ASSERT_EQ(told.size(), 2u);
+    const auto& one = told[told[0]["name"] == "strength" ? 0 : 1];
+    EXPECT_EQ(one["value"], 4);
+    EXPECT_EQ(one["default"], 2);
+    EXPECT_EQ(one["max"], 9);
+    EXPECT_EQ(one["given"], true);
+
+    ASSERT_TRUE(fine(afterglow_stack_set_argument(stack_.get(), str("strength"), str("6"))));
+    EXPECT_FLOAT_EQ(first_sample(), 3.0f);
+    ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 1)));
+    EXPECT_FLOAT_EQ(first_sample(), 0.5f) << "what was set stands above";
+    ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), str("gain.amount"))));
+    const ErrorPtr name(afterglow_stack_set_argument(stack_.get(), str("strenght"), str("6")));
+    EXPECT_EQ(afterglow_error_get_kind(name.get()), AFTERGLOW_ERROR_USAGE);
+    EXPECT_EQ(str(afterglow_error_get_nearest(name.get())), "strength");
+    EXPECT_THAT(text_of(name.get()), testing::StartsWith("error: argument strenght: "));
+    const ErrorPtr range(afterglow_stack_set_argument(stack_.get(), str("strength"), str("10")));
+    EXPECT_EQ(afterglow_error_get_kind(range.get()), AFTERGLOW_ERROR_USAGE);
+    for (const char* wrong : {"", "a=b", "a b"})
+      EXPECT_EQ(
+          afterglow_error_get_kind(ErrorPtr(afterglow_stack_set_argument(stack_.get(), str(wrong), str("1"))).get()),
+          AFTERGLOW_ERROR_USAGE);
+    EXPECT_FLOAT_EQ(first_sample(), 3.0f);
+
+    // What the preset comes not to know is left out; the rest stays.
+    write("look.lua", gain_of("fx.float { default = 2, min = 0, max = 5, doc = 'How much.' }"));
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack_.get(), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(), 1.0f);
+    EXPECT_THAT(messages_, testing::ElementsAre(testing::StartsWith("argument strength")));
+    ASSERT_TRUE(fine(afterglow_stack_set_argument(stack_.get(), str("label"), str("a"))));
+    ASSERT_TRUE(fine(afterglow_stack_set_argument(stack_.get(), str("strength"), str("5"))));
+    EXPECT_FLOAT_EQ(first_sample(), 2.5f);
+    ASSERT_TRUE(fine(afterglow_stack_set_argument(stack_.get(), str("strength"), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(), 1.0f);
+
+    options.argument_count = 1;
+    for (const char* wrong : {"strength", "strength=much", "strenght=1"}) {
+      const afterglow_string argument = afterglow_str(wrong);
+      options.arguments = &argument;
+      EXPECT_EQ(afterglow_error_get_kind(broken(options).get()), AFTERGLOW_ERROR_USAGE) << wrong;
+    }
+    options.arguments = nullptr;
+    EXPECT_EQ(afterglow_error_get_kind(broken(options).get()), AFTERGLOW_ERROR_USAGE);
+  }
 }
 
 }  // namespace

@@ -48,6 +48,23 @@ TEST_F(Record, ComparesContents) {
   EXPECT_EQ(first_changed(looks), folder_ / "a");
 }
 
+TEST_F(Record, MayKeepWhatWasRead) {
+  write("a", "one");
+  const auto record = FileRecord::keeping();
+  EXPECT_EQ(read_file(folder_ / "a", 100, record.get()).value(), "one");
+  EXPECT_FALSE(is_file(folder_ / "b", record.get()));
+  const auto looks = record->looks();
+  write("a", "two");
+  EXPECT_EQ(read_file(folder_ / "a", 100, record.get()).value(), "one");
+  EXPECT_EQ(read_file(folder_ / "a", 100).value(), "two") << "others see what there is";
+  fs::remove(folder_ / "a");
+  EXPECT_EQ(read_file(folder_ / "a", 100, record.get()).value(), "one");
+  EXPECT_TRUE(is_file(folder_ / "a", record.get()));
+  EXPECT_EQ(record->looks(), looks) << "nothing was looked at again";
+  write("b", "new");
+  EXPECT_TRUE(is_file(folder_ / "b", record.get()));
+}
+
 TEST_F(Record, NotesWhatWasLookedForInVain) {
   const auto looks = noted([&](FileRecord& record) {
     EXPECT_FALSE(read_file(folder_ / "missing", 100, &record).ok());

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 from os import PathLike
-from typing import Any, Callable, Iterable, Literal, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Iterable, Literal, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -48,6 +48,7 @@ class Stack:
         *,
         text: str = "",
         device: Optional[Device] = None,
+        args: Optional[Mapping[str, _Value]] = None,
         paths: Iterable[_Path] = (),
         installation: Optional[_Path] = None,
         calibration: Optional[_Path] = None,
@@ -87,7 +88,12 @@ class Stack:
         """Sets ENTRY.SETTING, as in "glow.intensity". Text is read as on the command line."""
 
     def unset(self, name: Optional[str] = None) -> None: ...
+    def set_argument(self, name: str, value: Optional[_Value]) -> None:
+        """Gives an argument of the preset (fx.args) a value, as `args` does; None: its default."""
+
     def get(self, name: str) -> Any: ...
+    @property
+    def arguments(self) -> list[dict[str, Any]]: ...
     @property
     def settings(self) -> list[dict[str, Any]]: ...
     def explain(self) -> dict[str, Any]: ...
