@@ -12,6 +12,8 @@ namespace afterglow {
 namespace {
 
 constexpr std::array<double, 2> kD65{0.3127, 0.3290};
+constexpr Chromaticities kAp0{{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, {0.32168, 0.33767}};
+constexpr Chromaticities kP3{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
 constexpr Chromaticities kAp1{{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 constexpr Chromaticities kWideGamut3{{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
 constexpr Chromaticities kWideGamut4{{0.7347, 0.2653}, {0.1424, 0.8576}, {0.0991, -0.0308}, kD65};
@@ -79,11 +81,15 @@ double from_gamma24(double v) { return mirrored_power(v, 2.4); }
 double as_it_is(double v) { return v; }
 
 constexpr std::array kSpaces{
+    InputSpace{"aces2065_1", "linear ACES2065-1 (SMPTE ST 2065-1), primaries AP0", as_it_is, kAp0},
     InputSpace{"acescct", "ACEScct (AMPAS S-2016-001), primaries AP1", from_acescct, kAp1},
+    InputSpace{"acescg", "linear ACEScg (AMPAS S-2014-004), primaries AP1", as_it_is, kAp1},
     InputSpace{"cineon", "Cineon printing density (black 95, white 685 of 1023), Rec.709", from_cineon, kRec709},
     InputSpace{"gamma22", "power 2.2, Rec.709", from_gamma22, kRec709},
     InputSpace{"gamma24", "power 2.4, Rec.709", from_gamma24, kRec709},
     InputSpace{"hlg", "HLG (ITU-R BT.2100), Rec.2020; the signal 0.75 is 1", from_hlg, kRec2020},
+    InputSpace{"lin_p3d65", "linear P3 with the white of D65 (SMPTE EG 432-1)", as_it_is, kP3},
+    InputSpace{"lin_rec2020", "linear Rec.2020", as_it_is, kRec2020},
     InputSpace{"linear", "linear Rec.709", as_it_is, kRec709},
     InputSpace{"logc3", "ARRI LogC3 at EI 800, ALEXA Wide Gamut 3", from_logc3, kWideGamut3},
     InputSpace{"logc4", "ARRI LogC4, ARRI Wide Gamut 4", from_logc4, kWideGamut4},

@@ -24,7 +24,9 @@ Rgb cones_of(double x, double y) {
   return rows({0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}) * xyz;
 }
 
+/// What is brighter than white stays.
 double soft_light(double base, double blend) {
+  if (base >= 1) return base;
   if (blend < 0.5) return 2 * base * blend + base * base * (1 - 2 * blend);
   return std::sqrt(base) * (2 * blend - 1) + 2 * base * (1 - blend);
 }

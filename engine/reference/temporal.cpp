@@ -15,7 +15,8 @@ constexpr double kNear = 1.5;               // stops
 double luminance(const Rgba& c) { return 0.2126729 * c.r + 0.7151522 * c.g + 0.0721750 * c.b; }
 double brightest(const Rgba& c) { return std::max({c.r, c.g, c.b}); }
 
-double ev_of(const Rgba& c) { return std::max(std::log2(luminance(c) / 0.18), kFirst); }
+/// Of straight colour. Where nothing is drawn there is none.
+double ev_of(const Rgba& c) { return c.a > 0 ? std::max(std::log2(luminance(c) / c.a / 0.18), kFirst) : 0; }
 
 }  // namespace
 
@@ -26,10 +27,13 @@ double wanted_exposure(const DoubleImage& source, const AutoExposure& settings) 
     for (int i = 0; i < columns; ++i) {
       const int x0 = i * source.width / columns, x1 = (i + 1) * source.width / columns;
       const int y0 = j * source.height / rows, y1 = (j + 1) * source.height / rows;
-      double sum = 0;
+      double sum = 0, count = 0;
       for (int y = y0; y < y1; ++y)
-        for (int x = x0; x < x1; ++x) sum += ev_of(source.at(x, y));
-      const double count = (x1 - x0) * (y1 - y0);
+        for (int x = x0; x < x1; ++x) {
+          sum += source.at(x, y).a * ev_of(source.at(x, y));
+          count += source.at(x, y).a;
+        }
+      if (count == 0) continue;
       const double u = (i + 0.5) / columns * 2 - 1, v = (j + 0.5) / rows * 2 - 1;
       const double weight = count * (settings.center ? std::exp(-2 * (u * u + v * v)) : 1);
       const double at = (std::clamp(sum / count, kFirst, kLast) - kFirst) * (kBins - 1) / (kLast - kFirst);
@@ -52,7 +56,7 @@ double wanted_exposure(const DoubleImage& source, const AutoExposure& settings) 
     count += counted;
     below = above;
   }
-  return std::clamp(sum / count, settings.min_ev, settings.max_ev);
+  return std::clamp(count > 0 ? sum / count : 0, settings.min_ev, settings.max_ev);
 }
 
 double adapted_exposure(double before, double wanted, double seconds, const AutoExposure& settings) {

@@ -18,7 +18,7 @@ end
 
 return fx.effect {
   name = "auto_exposure",
-  doc = "Exposes for middle grey by a histogram of the picture, and adapts to changes over time.",
+  doc = "Exposes for middle grey by a histogram of the picture, and adapts to changes over time. Where nothing is drawn (alpha 0) nothing is metered.",
   at = "post_process", order = 50, space = "scene",
   settings = {
     compensation = fx.float { min = -16, max = 16, default = 0, unit = "EV", doc = "Brighter or darker than middle grey, in stops." },

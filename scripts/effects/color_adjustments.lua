@@ -21,7 +21,7 @@ return fx.effect {
   doc = "Exposure, contrast, colour filter, hue and saturation.",
   at = "post_process", order = 190, space = "scene", alpha = "straight",
   settings = {
-    post_exposure = fx.float { default = 0, unit = "EV", doc = "Brightness in stops: light times 2^EV." },
+    post_exposure = fx.float { default = 0, unit = "EV", doc = "Brightness in stops: light times 2^EV. As with all settings here, light above 60 counts as 60." },
     contrast = fx.float { min = -100, max = 100, default = 0, unit = "%",
       doc = "Contrast around middle grey (linear 0.22), in Alexa LogC space. -100 leaves that grey alone." },
     color_filter = fx.color { default = { 1, 1, 1 }, doc = "Light is multiplied by this; may exceed 1." },

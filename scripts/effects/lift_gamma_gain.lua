@@ -60,7 +60,7 @@ return fx.effect {
   at = "post_process", order = 180, space = "scene", alpha = "straight",
   settings = {
     lift = wheel("lift"), lift_offset = ring("Light added everywhere; shows most in the darks."),
-    gamma = wheel("gamma"), gamma_offset = ring("Above 0 lightens the middle, below 0 darkens it; black stays."),
+    gamma = wheel("gamma"), gamma_offset = ring("Above 0 lightens the middle, below 0 darkens it; black and 1 stay, and light above 1 goes the other way."),
     gain = wheel("gain"), gain_offset = ring("Light times 1 + this; shows most in the brights."),
   },
   active = function(s)

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Split toning: one tint for the shadows and another for the highlights, by soft light in gamma space, as Unity and photographers' programs
--- do it. Middle grey (#808080) is neutral.
+-- do it, but for light above 1, which Unity's formula turns to the opposite
+-- tint: here it stays. Middle grey (#808080) is neutral.
 local fx = require "afterglow"
 
 local kGrey = 0.21404114  -- linear value of the display value 0.5
@@ -28,7 +29,7 @@ local function is_grey(c) return c[1] == 0.5 and c[2] == 0.5 and c[3] == 0.5 end
 
 return fx.effect {
   name = "split_toning",
-  doc = "Tints shadows and highlights in colours of their own.",
+  doc = "Tints shadows and highlights in colours of their own; white and what is brighter stays.",
   at = "post_process", order = 155, space = "scene", alpha = "straight",
   settings = {
     shadows = fx.color { default = { kGrey, kGrey, kGrey }, doc = "Tint of the shadows; #808080 leaves them alone." },
@@ -37,8 +38,7 @@ return fx.effect {
   },
   active = function(s) return not (is_grey(encoded(s.shadows)) and is_grey(encoded(s.highlights))), "both tints are grey" end,
   holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
-    -- Soft light squares what is brighter than white, so that the rounding of how bright it is counts as often as it is brighter.
-    error = { up_to = 50 } },
+    "error" },
   build = function(g, s, source)
     return g:pass { shader = "split_toning/tint", source = source,
                     shadows = from_grey(s.shadows), highlights = from_grey(s.highlights), balance = s.balance / 100 }

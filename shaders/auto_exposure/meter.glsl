@@ -8,8 +8,8 @@ layout(constant_id = 0) const bool center = false;
 vec4 sample_at(ivec2 cell) {
   ivec2 size = image_size(source), cells = target_size();
   ivec2 first = first_of(cell, cells, size), last = first_of(cell + 1, cells, size);
-  float sum = 0.0;
+  vec2 sum = vec2(0.0);
   for (int y = first.y; y < last.y; ++y)
-    for (int x = first.x; x < last.x; ++x) sum += exposure_value(fetch(source, ivec2(x, y)).rgb);
-  return mean_of(sum, last - first, cell, cells, center);
+    for (int x = first.x; x < last.x; ++x) sum += metered(fetch(source, ivec2(x, y)));
+  return mean_of(sum, cell, cells, center);
 }

@@ -11,8 +11,8 @@ layout(constant_id = 0) const bool center = false;
 vec4 compute_at(ivec2 cell) {
   ivec2 size = image_size(source), cells = target_size(), own = ivec2(gl_LocalInvocationID.xy);
   ivec2 first = first_of(cell, cells, size), last = first_of(cell + 1, cells, size);
-  float sum = 0.0;
+  vec2 sum = vec2(0.0);
   for (int y = first.y + own.y; y < last.y; y += 8)
-    for (int x = first.x + own.x; x < last.x; x += 8) sum += exposure_value(fetch(source, ivec2(x, y)).rgb);
-  return mean_of(workgroup_sum(sum), last - first, cell, cells, center);
+    for (int x = first.x + own.x; x < last.x; x += 8) sum += metered(fetch(source, ivec2(x, y)));
+  return mean_of(workgroup_sum(vec4(sum, 0.0, 0.0)).xy, cell, cells, center);
 }

@@ -7,11 +7,12 @@ uniform vec3 highlights;
 uniform float balance;    // −1…1
 
 /// Unity's soft light (Color.hlsl): darkens by a parabola, lightens by a root. `amount` is 1 − 2·blend, which near the neutral grey has
-/// digits that the blend has not.
-vec3 soft_light(vec3 base, vec3 amount) {
+/// digits that the blend has not. White stays, and so does what is brighter: the formula beyond it would turn tints round.
+vec3 soft_light(vec3 bright, vec3 amount) {
+  vec3 over = max(bright, 1.0), base = bright / over;
   vec3 dark = base * ((1.0 - amount) + base * amount);
   vec3 light = base * (1.0 + amount) - sqrt(base) * amount;
-  return min(mix(dark, light, lessThanEqual(amount, vec3(0.0))), 1e15);
+  return mix(dark, light, lessThanEqual(amount, vec3(0.0))) * over;
 }
 
 vec4 apply(vec4 color) {

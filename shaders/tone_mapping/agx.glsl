@@ -19,7 +19,8 @@ vec3 agx_sigmoid(vec3 x) {
   return mix(low, high, greaterThanEqual(x, vec3(kPivot)));
 }
 
-/// An ASC CDL of the encoded colour.
+/// Slope, power and saturation of the encoded colour. The luma is that before slope and power, as in Wrensch's shader; an ASC CDL takes
+/// the one behind them.
 vec3 agx_look(vec3 c, vec3 slope, float power, float saturation) {
   float y = dot(c, vec3(0.2126, 0.7152, 0.0722));
   return y + saturation * (pow(c * slope, vec3(power)) - y);

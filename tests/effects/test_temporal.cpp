@@ -69,6 +69,19 @@ TEST_F(Effects, AutoExposureFollowsAsTheOracleDoes) {
   }
 }
 
+TEST_F(Effects, AutoExposureMetersWhatIsDrawn) {
+  DoubleImage cut_out = grey(0.72);
+  for (std::size_t i = 0; i < cut_out.pixels.size(); ++i)
+    cut_out.pixels[i] *= i % 4 == 0 ? 1.0 : i % 4 == 1 ? 0.5 : 0.0;
+  const auto result = TemporalPlayer("fx.auto_exposure {}").play(cut_out, 1);
+  EXPECT_NEAR(result[0], 0.18, 1e-5);
+  EXPECT_NEAR(result[4], 0.09, 1e-5) << "half of it covers";
+  EXPECT_TRUE(agrees(result, auto_exposure(cut_out, wanted_exposure(cut_out, {}), {}), 1e-4, kRgb));
+  const DoubleImage empty({48, 27}, Rgba(0));
+  EXPECT_EQ(wanted_exposure(empty, {}), 0);
+  EXPECT_EQ(TemporalPlayer("fx.auto_exposure {}").play(empty, 1)[0], 0);
+}
+
 TEST_F(Effects, AutoExposureBringsGreyToMiddleGreyAtOnce) {
   TemporalPlayer player("fx.auto_exposure {}");
   EXPECT_NEAR(player.play(grey(1.44), 1)[0], 0.18, 1e-5);

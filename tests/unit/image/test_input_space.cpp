@@ -78,13 +78,29 @@ TEST(InputSpace, WhiteStaysGreyAndPrimariesAreTheMakers) {
   EXPECT_NEAR((*encoding.matrix)[2][1], -0.226954, 2e-5);
 }
 
+TEST(InputSpace, LinearLightOfOtherPrimaries) {
+  const auto matrix = [](const char* name) {
+    ColorEncoding encoding;
+    use_input_space(*find_input_space(name).value(), encoding);
+    EXPECT_EQ(encoding.curve, TransferCurve::linear) << name;
+    return encoding.matrix.value();
+  };
+  // As ACES publishes them: Bradford from the white of ACES to D65.
+  EXPECT_NEAR(matrix("acescg")[0][0], 1.70505, 2e-5);
+  EXPECT_NEAR(matrix("acescg")[1][2], -0.01055, 2e-5);
+  EXPECT_NEAR(matrix("aces2065_1")[0][0], 2.52169, 2e-5);
+  EXPECT_NEAR(matrix("aces2065_1")[2][1], -0.15622, 2e-5);
+  // ITU-R BT.2087 has this one's inverse.
+  EXPECT_NEAR(matrix("lin_rec2020")[0][0], 1.66049, 2e-5);
+  EXPECT_NEAR(matrix("lin_p3d65")[0][0], 1.22494, 2e-5);
+}
+
 TEST(InputSpace, UnknownNamesAreTold) {
   const auto found = find_input_space("logc");
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().text(),
-            "error: 'logc' is no input space; allowed: acescct, cineon, gamma22, gamma24, hlg, linear, logc3, logc4, "
-            "pq, rec709, slog3, srgb; did "
-            "you mean 'logc3'?");
+            "error: 'logc' is no input space; allowed: aces2065_1, acescct, acescg, cineon, gamma22, gamma24, hlg, "
+            "lin_p3d65, lin_rec2020, linear, logc3, logc4, pq, rec709, slog3, srgb; did you mean 'logc3'?");
 }
 
 TEST(InputSpace, XyzIsReadWithoutInventingAdaptation) {

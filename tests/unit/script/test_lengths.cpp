@@ -67,8 +67,8 @@ TEST_F(Lengths, Messages) {
             "preset.lua:3: error: fx.stack: reference_height = 0 is out of range; allowed: 1…16384");
   EXPECT_EQ(
       error("input_space = \"logc\""),
-      "preset.lua:3: error: fx.stack: input_space: 'logc' is no input space; allowed: acescct, cineon, gamma22, gamma24, hlg, "
-      "linear, logc3, logc4, pq, rec709, slog3, srgb; did you mean 'logc3'?");
+      "preset.lua:3: error: fx.stack: input_space: 'logc' is no input space; allowed: aces2065_1, acescct, acescg, "
+      "cineon, gamma22, gamma24, hlg, lin_p3d65, lin_rec2020, linear, logc3, logc4, pq, rec709, slog3, srgb; did you mean 'logc3'?");
 }
 
 }  // namespace
