@@ -88,6 +88,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   job.at = fs::current_path(ec);
   job.look = arguments.run.preset.file;
   if (video) job.video = (job.at / request.files.output).lexically_normal().string();
+  job.holds_missing = std::ranges::any_of(out.frames, [](const FrameJob& frame) { return frame.missing > 0; });
   job.pre_roll = look.pre_roll;
   job.needs = arguments.needs;
   job.chunks = farm::chunks_of(out.frames, frames_a_chunk(arguments, look));
