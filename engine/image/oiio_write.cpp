@@ -88,6 +88,15 @@ void describe_color(OIIO::ImageSpec& spec, const StripForm& form, const FileFact
                    profile.data());
 }
 
+/// DPX has words for these; it would take an old file's else.
+const char* film_transfer(const StripForm& form) {
+  const std::string_view space = form.space ? form.space->name() : "srgb";
+  return space == "linear"   ? "Linear"
+         : space == "cineon" ? "Logarithmic"
+         : space == "rec709" ? "ITU-R 709-4"
+                             : "User defined";
+}
+
 Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& format, const StripForm& form,
                                  const WriteOptions& options) {
   OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, form.alpha ? 4 : 3,
@@ -101,6 +110,7 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
   AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   switch (format.kind) {
     case OutputKind::dpx:
+      spec.attribute("dpx:Transfer", film_transfer(form));
       spec.attribute("oiio:BitsPerSample", std::bit_width(static_cast<unsigned>(max_code(form.type))));
       break;
     case OutputKind::targa:

@@ -55,6 +55,24 @@ constexpr std::array<std::string_view, 35> kDropped{"compression",
 constexpr std::array<std::string_view, 9> kDroppedFamilies{
     "oiio:", "openexr:", "png:", "jpeg:", "tiff:", "iccprofile:", "thumbnail", "gif:", "webp:"};
 
+/// Of film scans (dpx:, cineon:), what is no word about the old file's samples.
+constexpr std::array<std::string_view, 16> kFilmFacts{"framerate",
+                                                      "temporalframerate",
+                                                      "frameposition",
+                                                      "sequencelength",
+                                                      "heldcount",
+                                                      "shutterangle",
+                                                      "frameid",
+                                                      "slateinfo",
+                                                      "format",
+                                                      "filmedgecode",
+                                                      "sourcedatetime",
+                                                      "sourceimagefilename",
+                                                      "inputdevice",
+                                                      "inputdevicemodelnumber",
+                                                      "inputdeviceserialnumber",
+                                                      "userbits"};
+
 /// What libraries write once more by themselves, beside the first name.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kTwice{
     {{"Artist", "IPTC:Creator"}, {"Copyright", "IPTC:CopyrightNotice"}, {"ImageDescription", "IPTC:Caption"}}};
@@ -71,6 +89,9 @@ constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
 bool keeps_metadata(std::string_view name) {
   const std::string plain = lower(name);
+  for (const std::string_view family : {"dpx:", "cineon:"})
+    if (plain.starts_with(family))
+      return std::ranges::find(kFilmFacts, std::string_view(plain).substr(family.size())) != kFilmFacts.end();
   return std::find(kDropped.begin(), kDropped.end(), plain) == kDropped.end() &&
          !starts_with_any(plain, kDroppedFamilies);
 }

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What files that are written say of themselves, as other programs read it.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Kept : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { name = \"nothing\" }\n");
+  }
+  static OIIO::ImageSpec spec(OIIO::TypeDesc type = OIIO::TypeHalf) { return {32, 16, 3, type}; }
+  /// A ramp from 0 to 1 in every row.
+  void make(const std::string& name, const OIIO::ImageSpec& how) const {
+    std::vector<float> pixels(static_cast<std::size_t>(how.width) * how.height * 3);
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(i / 3 % 32) / 31;
+    const auto output = OIIO::ImageOutput::create(name);
+    ASSERT_TRUE(output && output->open(text(name), how)) << name;
+    ASSERT_TRUE(output->write_image(OIIO::TypeFloat, pixels.data()) && output->close()) << name;
+  }
+  OIIO::ImageSpec said_by(const std::string& name) const {
+    const auto input = OIIO::ImageInput::open(text(name));
+    EXPECT_TRUE(input) << name;
+    return input ? input->spec() : OIIO::ImageSpec();
+  }
+  void through(const std::vector<std::string>& names, const std::vector<std::string>& more = {}) const {
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      std::vector<std::string> words{"run", "look.lua", names[i - 1], "-o", names[i]};
+      if (i + 1 == names.size()) words.insert(words.end(), more.begin(), more.end());
+      const Outcome outcome = run(words);
+      ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    }
+  }
+  /// Of what every format holds: up to 1.
+  float furthest(const std::string& a, const std::string& b) const {
+    const auto one = pixels_of(a), other = pixels_of(b);
+    EXPECT_EQ(one.size(), other.size());
+    float most = 0;
+    for (std::size_t i = 0; i < std::min(one.size(), other.size()); ++i)
+      most = std::max(most, std::abs(std::min(one[i], 1.0f) - std::min(other[i], 1.0f)));
+    return most;
+  }
+};
+
+TEST_F(Kept, DpxSaysTheTransferOfWhatItHolds) {
+  OIIO::ImageSpec film = spec(OIIO::TypeUInt16);
+  film.attribute("oiio:ColorSpace", "KodakLog");
+  film.attribute("dpx:Colorimetric", "Printing density");
+  film.attribute("dpx:LowData", 95);
+  film.attribute("dpx:WhiteLevel", 685.0f);
+  film.attribute("dpx:FrameRate", 25.0f);
+  film.attribute("dpx:SlateInfo", "reel 7");
+  ASSERT_NO_FATAL_FAILURE(make("log.dpx", film));
+  ASSERT_NO_FATAL_FAILURE(through({"log.dpx", "light.exr"}));
+  const auto expect = [&](const std::string& file, const char* transfer) {
+    const OIIO::ImageSpec said = said_by(file);
+    EXPECT_EQ(said.get_string_attribute("dpx:Transfer"), transfer) << file;
+    EXPECT_EQ(said.get_string_attribute("dpx:Colorimetric"), "User defined") << file;
+    EXPECT_FALSE(said.find_attribute("dpx:LowData")) << file;
+    EXPECT_FALSE(said.find_attribute("dpx:WhiteLevel")) << file;
+    EXPECT_EQ(said.get_float_attribute("dpx:FrameRate"), 25) << file;
+    EXPECT_EQ(said.get_string_attribute("dpx:SlateInfo"), "reel 7") << file;
+    ASSERT_NO_FATAL_FAILURE(through({file, "again.exr"}));
+    EXPECT_LT(furthest("again.exr", "light.exr"), 0.02f) << file << ": read by its own words";
+  };
+  for (const auto& [space, transfer] : {std::pair{"srgb", "User defined"},
+                                        {"cineon", "Logarithmic"},
+                                        {"linear", "Linear"},
+                                        {"rec709", "ITU-R 709-4"}}) {
+    const std::string file = std::string(space) + ".dpx";
+    ASSERT_NO_FATAL_FAILURE(through({"log.dpx", file}, {"--output-space", space}));
+    expect(file, transfer);
+  }
+  ASSERT_NO_FATAL_FAILURE(through({"log.dpx", "way.exr", "way.dpx"}, {"--output-space", "srgb"}));
+  expect("way.dpx", "User defined");
+}
+
+}  // namespace
+}  // namespace afterglow::test
