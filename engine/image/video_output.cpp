@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/text.h"
+#include "image/kept_values.h"
 #include "image/time_code.h"
 
 namespace afterglow {
@@ -261,6 +262,12 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
 void keep_facts(const FileFacts& first, VideoPlan& plan) {
   const MetadataValue* code = find_metadata(first.metadata, kTimeCodeName);
   plan.time_code = code ? metadata_text(*code) : "";
+}
+
+double said_fps(const FileFacts& picture) {
+  const MetadataValue* said = find_metadata(picture.metadata, "FramesPerSecond");
+  const auto rate = said ? rate_of(*said) : std::nullopt;
+  return rate ? static_cast<double>(rate->numerator) / rate->denominator : 0;
 }
 
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file) {

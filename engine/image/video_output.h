@@ -59,6 +59,9 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
 /// What a video keeps of the file of its first picture: the time code.
 void keep_facts(const FileFacts& first, VideoPlan& plan);
 
+/// Frames a second that a picture's file says; 0: it does not.
+double said_fps(const FileFacts& picture);
+
 /// Sides that the pixel format cannot hold. Errors (usage).
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file);
 
