@@ -123,6 +123,7 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
     case OutputKind::tiff:
       spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression));
       spec.attribute("tiff:zipquality", kTiffZipLevel);
+      if (form.type == SampleType::half) spec.attribute("tiff:half", 1);  // else floats are written
       break;
     default:
       break;

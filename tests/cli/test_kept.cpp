@@ -81,5 +81,14 @@ TEST_F(Kept, DpxSaysTheTransferOfWhatItHolds) {
   expect("way.dpx", "User defined");
 }
 
+TEST_F(Kept, HalfIsHalfInTiff) {
+  ASSERT_NO_FATAL_FAILURE(make("a.exr", spec()));
+  ASSERT_NO_FATAL_FAILURE(through({"a.exr", "a.tif"}, {"--type", "half"}));
+  EXPECT_EQ(said_by("a.tif").format, OIIO::TypeHalf);
+  EXPECT_EQ(furthest("a.tif", "a.exr"), 0);
+  ASSERT_NO_FATAL_FAILURE(through({"a.exr", "f.tif"}, {"--type", "float"}));
+  EXPECT_EQ(said_by("f.tif").format, OIIO::TypeFloat);
+}
+
 }  // namespace
 }  // namespace afterglow::test
