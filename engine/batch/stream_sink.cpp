@@ -116,10 +116,12 @@ class VideoBytes : public FrameBytes {
     AFTERGLOW_TRY(const PixelLayout* layout, asked());
     const bool deep = picture.facts && (picture.facts->floating || picture.facts->bits > 8);
     size_ = picture.display_window.size();
+    VideoPlan plan;
+    if (picture.facts) keep_facts(*picture.facts, plan);
+    aspect_ = plan.pixel_aspect;
     if (!layout && y4m_) layout = find_pixel_layout(deep ? "yuv444p10le" : "yuv444p");
     if (!layout)
       layout = find_pixel_layout(picture.has_alpha ? deep ? "rgba64le" : "rgba" : deep ? "rgb48le" : "rgb24");
-    VideoPlan plan;
     plan.pack.layout = layout;
     AFTERGLOW_CHECK(check_video_size(plan, size_, kName));
     rules_.layout = layout;
@@ -152,13 +154,13 @@ class VideoBytes : public FrameBytes {
   std::string header(const PixelLayout& layout) const {
     const char* chroma = layout.chroma_y > 0 ? "420" : layout.chroma_x > 0 ? "422" : "444";
     const std::string bits = layout.bits > 8 ? fmt::format("p{}", layout.bits) : layout.chroma_y > 0 ? "mpeg2" : "";
-    return fmt::format("YUV4MPEG2 W{} H{} F{}:{} Ip A1:1 C{}{} XCOLORRANGE=LIMITED\n", size_.width, size_.height,
-                       rate_.numerator, rate_.denominator, chroma, bits);
+    return fmt::format("YUV4MPEG2 W{} H{} F{}:{} Ip A{}:{} C{}{} XCOLORRANGE=LIMITED\n", size_.width, size_.height,
+                       rate_.numerator, rate_.denominator, aspect_.numerator, aspect_.denominator, chroma, bits);
   }
 
   bool y4m_;
   WriteOptions options_;
-  Rational rate_;
+  Rational rate_, aspect_{1, 1};
   Diagnostics& diagnostics_;
   PackRules rules_;
   Size size_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -97,6 +98,19 @@ const char* film_transfer(const StripForm& form) {
                              : "User defined";
 }
 
+/// Without a unit the two resolutions say the shape of a pixel alone: JPEG's are its width and height, TIFF's are dots
+/// across and down.
+void describe_shape(OIIO::ImageSpec& spec, bool widths) {
+  constexpr float kDots = 72, kMost = 100;
+  const std::string unit = lower(spec.get_string_attribute("ResolutionUnit"));
+  const float ratio = spec.get_float_attribute("PixelAspectRatio", 1);
+  if (unit.starts_with("in") || unit.starts_with("cm") || unit == "m" || ratio == 1) return;
+  if (!(ratio > 1 / kMost && ratio < kMost)) return;
+  spec.attribute("XResolution", std::round(widths ? kDots * ratio : kDots));
+  spec.attribute("YResolution", std::round(widths ? kDots : kDots * ratio));
+  spec.attribute("ResolutionUnit", "none");
+}
+
 Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& format, const StripForm& form,
                                  const WriteOptions& options) {
   OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, form.alpha ? 4 : 3,
@@ -119,11 +133,13 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
     case OutputKind::jpeg:
       spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
+      describe_shape(spec, true);
       break;
     case OutputKind::tiff:
       spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression));
       spec.attribute("tiff:zipquality", kTiffZipLevel);
       if (form.type == SampleType::half) spec.attribute("tiff:half", 1);  // else floats are written
+      describe_shape(spec, false);
       break;
     default:
       break;

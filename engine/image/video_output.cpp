@@ -11,6 +11,7 @@
 
 #include "core/text.h"
 #include "image/kept_values.h"
+#include "image/output_metadata.h"
 #include "image/time_code.h"
 
 namespace afterglow {
@@ -259,9 +260,28 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   return plan;
 }
 
+namespace {
+
+/// The simplest fraction that is as near as pictures say it.
+Rational simple_ratio(float ratio) {
+  constexpr int kMost = 1000;
+  constexpr float kShapes = 100, kNear = 1e-4f;
+  if (!(ratio > 1 / kShapes && ratio < kShapes)) return {1, 1};
+  int below = 1;
+  const auto above = [&] { return std::lround(ratio * static_cast<float>(below)); };
+  while (below < kMost && std::abs(static_cast<float>(above()) / static_cast<float>(below) - ratio) > kNear * ratio)
+    ++below;
+  return {static_cast<int>(above()), below};
+}
+
+}  // namespace
+
 void keep_facts(const FileFacts& first, VideoPlan& plan) {
   const MetadataValue* code = find_metadata(first.metadata, kTimeCodeName);
   plan.time_code = code ? metadata_text(*code) : "";
+  const Metadata kept = kept_metadata(first);
+  if (const MetadataValue* aspect = find_metadata(kept, "PixelAspectRatio"))
+    plan.pixel_aspect = simple_ratio(metadata_number(*aspect, 1));
 }
 
 double said_fps(const FileFacts& picture) {

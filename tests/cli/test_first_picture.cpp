@@ -53,5 +53,18 @@ TEST_F(FirstPicture, SaysTheRateOfAVideo) {
   EXPECT_TRUE(frames_of("d.mkv") == frames_of("e.mkv"));
 }
 
+TEST_F(FirstPicture, SaysTheShapeOfAPixel) {
+  ASSERT_NO_FATAL_FAILURE(make_pictures(0, 2));
+  for (const char* name : {"a.mp4", "a.mov", "a.mkv"}) {
+    make(name);
+    EXPECT_EQ(stream_of(name).at("sample_aspect_ratio"), "2:1") << name;
+    EXPECT_EQ(stream_of(name).at("r_frame_rate"), "24/1") << name;
+  }
+  EXPECT_THAT(make("-").out.substr(0, 60), HasSubstr(" A2:1 "));
+  ASSERT_NO_FATAL_FAILURE(make_pictures(0, 4.0f / 3));
+  make("b.mp4");
+  EXPECT_EQ(stream_of("b.mp4").at("sample_aspect_ratio"), "4:3");
+}
+
 }  // namespace
 }  // namespace afterglow::test

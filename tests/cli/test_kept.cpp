@@ -90,5 +90,16 @@ TEST_F(Kept, HalfIsHalfInTiff) {
   EXPECT_EQ(said_by("f.tif").format, OIIO::TypeFloat);
 }
 
+TEST_F(Kept, ThePixelKeepsItsShape) {
+  OIIO::ImageSpec wide = spec();
+  wide.attribute("PixelAspectRatio", 2.0f);
+  ASSERT_NO_FATAL_FAILURE(make("a.exr", wide));
+  ASSERT_NO_FATAL_FAILURE(through({"a.exr", "a.jpg", "a.tif", "b.jpg", "b.exr"}));
+  for (const char* name : {"a.jpg", "a.tif", "b.jpg", "b.exr"})
+    EXPECT_EQ(said_by(name).get_float_attribute("PixelAspectRatio"), 2) << name;
+  EXPECT_EQ(said_by("a.jpg").get_float_attribute("XResolution"), 144);
+  EXPECT_EQ(said_by("a.jpg").get_float_attribute("YResolution"), 72);
+}
+
 }  // namespace
 }  // namespace afterglow::test
