@@ -2,6 +2,7 @@
 #include "image/output_metadata.h"
 
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
@@ -82,6 +83,19 @@ bool is_said_twice(const Metadata& metadata, const std::string& name) {
       kTwice, [&](const auto& pair) { return pair.second == name && find_metadata(metadata, pair.first); });
 }
 
+/// Names that mean nothing in an EXR: they are its owner's there. A "version" of 1 is that of deep parts.
+bool is_own(const std::string& name, const Imf::Attribute& attribute) {
+  const auto* version = dynamic_cast<const Imf::IntAttribute*>(&attribute);
+  const std::string plain = lower(name);
+  return plain == "gamma" || plain == "hash" || (plain == "version" && !(version && version->value() == 1));
+}
+
+/// The white that the old primaries had.
+bool is_of_old_primaries(const std::string& name, const Imf::Header& from) {
+  return name == "adoptedNeutral" && Imf::hasChromaticities(from) &&
+         !(Imf::chromaticities(from) == Imf::Chromaticities());
+}
+
 /// PNG's limit for a keyword, and a size above which a text is no description any more.
 constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
@@ -121,7 +135,9 @@ Metadata kept_metadata(const FileFacts& facts) {
 void add_kept_attributes(Imf::Header& header, const FileFacts& facts) {
   if (facts.exr_header) {
     for (auto it = facts.exr_header->begin(); it != facts.exr_header->end(); ++it)
-      if (keeps_metadata(it.name())) header.insert(it.name(), it.attribute());
+      if ((keeps_metadata(it.name()) || is_own(it.name(), it.attribute())) &&
+          !is_of_old_primaries(it.name(), *facts.exr_header))
+        header.insert(it.name(), it.attribute());
   } else {
     add_metadata(header, kept_metadata(facts));
   }

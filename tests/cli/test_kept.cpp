@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What files that are written say of themselves, as other programs read it.
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -99,6 +103,33 @@ TEST_F(Kept, ThePixelKeepsItsShape) {
     EXPECT_EQ(said_by(name).get_float_attribute("PixelAspectRatio"), 2) << name;
   EXPECT_EQ(said_by("a.jpg").get_float_attribute("XResolution"), 144);
   EXPECT_EQ(said_by("a.jpg").get_float_attribute("YResolution"), 72);
+}
+
+TEST_F(Kept, AttributesOfOnesOwnStayFromExrToExr) {
+  OIIO::ImageSpec own = spec();
+  own.attribute("gamma", 2.5f);
+  own.attribute("hash", "abc");
+  own.attribute("note", 3);
+  own.attribute("Version", "v012");
+  const float acescg[8] = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+  const float white[2] = {0.32168f, 0.33767f};
+  own.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), acescg);
+  own.attribute("adoptedNeutral", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::VEC2), white);
+  ASSERT_NO_FATAL_FAILURE(make("a.exr", own));
+  ASSERT_NO_FATAL_FAILURE(through({"a.exr", "b.exr"}));
+  const Imf::InputFile b(text("b.exr").c_str());
+  EXPECT_TRUE(b.header().findTypedAttribute<Imf::IntAttribute>("note"));
+  EXPECT_TRUE(b.header().findTypedAttribute<Imf::StringAttribute>("Version"));
+  EXPECT_TRUE(b.header().find("gamma") != b.header().end());
+  ASSERT_TRUE(b.header().findTypedAttribute<Imf::StringAttribute>("hash"));
+  EXPECT_EQ(b.header().findTypedAttribute<Imf::StringAttribute>("hash")->value(), "abc");
+  EXPECT_TRUE(b.header().find("adoptedNeutral") == b.header().end()) << "pixels are of Rec.709's white now";
+  // Without primaries of its own nothing was converted.
+  own.erase_attribute("chromaticities");
+  ASSERT_NO_FATAL_FAILURE(make("c.exr", own));
+  ASSERT_NO_FATAL_FAILURE(through({"c.exr", "d.exr"}));
+  const Imf::InputFile d(text("d.exr").c_str());
+  EXPECT_TRUE(d.header().find("adoptedNeutral") != d.header().end());
 }
 
 }  // namespace
