@@ -132,5 +132,14 @@ TEST_F(Kept, AttributesOfOnesOwnStayFromExrToExr) {
   EXPECT_TRUE(d.header().find("adoptedNeutral") != d.header().end());
 }
 
+TEST_F(Kept, RatesThatAreNoneAreNotKept) {
+  OIIO::ImageSpec film = spec(OIIO::TypeUInt16);
+  film.attribute("dpx:FrameRate", 1.00985e-39f);
+  ASSERT_NO_FATAL_FAILURE(make("a.dpx", film));
+  ASSERT_NO_FATAL_FAILURE(through({"a.dpx", "a.png"}));
+  EXPECT_FALSE(said_by("a.png").find_attribute("FramesPerSecond"))
+      << said_by("a.png").get_string_attribute("FramesPerSecond");
+}
+
 }  // namespace
 }  // namespace afterglow::test
