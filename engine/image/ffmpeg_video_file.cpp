@@ -51,6 +51,7 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   const auto& from = sound_only ? plan_.audio : plan_.source;
   if (from.empty()) return {};
   AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, plan_.range, plan_.patience, name, diagnostics));
+  if (!sound_only) stream_->disposition = copy_->disposition_of_pictures();
   return {};
 }
 

@@ -66,5 +66,18 @@ TEST_F(FirstPicture, SaysTheShapeOfAPixel) {
   EXPECT_EQ(stream_of("b.mp4").at("sample_aspect_ratio"), "4:3");
 }
 
+TEST_F(FirstPicture, PicturesOfAVideoStayItsDefault) {
+  ASSERT_EQ(
+      shell("ffmpeg -v error -f lavfi -i testsrc2=size=96x64:rate=24 -f lavfi -i sine -t 0.5 -c:v libx264 -c:a aac "
+            "-y in.mp4")
+          .exit_code,
+      0);
+  ASSERT_EQ(run({"run", "look.lua", "in.mp4", "-o", "a.mkv"}).exit_code, kDone);
+  const auto probed = probe("a.mkv", "-show_streams");
+  ASSERT_EQ(probed.at("streams").size(), 2u);
+  for (const auto& stream : probed.at("streams"))
+    EXPECT_EQ(stream.at("disposition").at("default"), 1) << stream.at("codec_type");
+}
+
 }  // namespace
 }  // namespace afterglow::test
