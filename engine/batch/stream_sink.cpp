@@ -138,8 +138,10 @@ class VideoBytes : public FrameBytes {
   Result<std::string> frame(const Picture& picture) override {
     const Size size = picture.display_window.size();
     if (size != size_)
-      return stream_usage(fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
-                                      size.height, size_.width, size_.height));
+      return Error{ErrorKind::io,
+                   fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
+                               size.height, size_.width, size_.height),
+                   kName};
     if (!rules_.layout->alpha && !warned_ && has_transparency(picture)) {
       warned_ = true;
       diagnostics_.warn(fmt::format("{}: {} has no alpha; the pictures are put on black", kName, rules_.layout->name));
