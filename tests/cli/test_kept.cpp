@@ -141,5 +141,13 @@ TEST_F(Kept, RatesThatAreNoneAreNotKept) {
       << said_by("a.png").get_string_attribute("FramesPerSecond");
 }
 
+TEST_F(Kept, APatternOfAnotherKindIsTold) {
+  make_exr("a.0001.exr");
+  const Outcome outcome = run({"run", "look.lua", "a.@@@@.exr", "-o", "b.####.exr"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("a.@@@@.exr: error: no such file; the place of a frame's number is written #; did "
+                                     "you mean 'a.####.exr'?"));
+}
+
 }  // namespace
 }  // namespace afterglow::test
