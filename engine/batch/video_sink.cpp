@@ -41,7 +41,7 @@ class VideoSink : public FrameSink {
     std::optional<Result<PackedFrame>> packed;
     if (VideoWriter* const writer = opened_.load()) packed = pack(*writer, picture);
     AFTERGLOW_CHECK(turn());
-    if (!writer_) AFTERGLOW_CHECK(begin(job, picture));
+    if (!writer_) AFTERGLOW_CHECK(begin(job, job.movie ? 0 : index, picture));
     AFTERGLOW_TRY(const VideoTime time, times_.of(job, index));
     if (!packed) packed = pack(*writer_, picture);
     AFTERGLOW_TRY(PackedFrame frame, std::move(*packed));
@@ -89,11 +89,11 @@ class VideoSink : public FrameSink {
     auto [frame, time] = *std::exchange(last_, std::nullopt);
     return writer_->write(std::move(frame), time);
   }
-  Result<void> begin(const FrameJob& job, const Picture& picture) {
+  Result<void> begin(const FrameJob& job, std::size_t held, const Picture& picture) {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
     times_.begin(job, plan);
-    if (picture.facts) keep_facts(*picture.facts, plan);
+    if (picture.facts) keep_facts(*picture.facts, plan, held);
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
     opened_ = writer_.get();

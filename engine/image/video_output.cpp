@@ -276,9 +276,10 @@ Rational simple_ratio(float ratio) {
 
 }  // namespace
 
-void keep_facts(const FileFacts& first, VideoPlan& plan) {
+void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held) {
   const MetadataValue* code = find_metadata(first.metadata, kTimeCodeName);
   plan.time_code = code ? metadata_text(*code) : "";
+  if (held > 0) plan.time_code = time_code_after(plan.time_code, -static_cast<long long>(held), plan.rate);
   const Metadata kept = kept_metadata(first);
   if (const MetadataValue* aspect = find_metadata(kept, "PixelAspectRatio"))
     plan.pixel_aspect = simple_ratio(metadata_number(*aspect, 1));

@@ -58,7 +58,8 @@ struct VideoPlan {
 Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptions& options, bool deep, bool has_alpha);
 
 /// What a video keeps of the file of its first picture: the time code, the shape of a pixel.
-void keep_facts(const FileFacts& first, VideoPlan& plan);
+/// `held`: places before it that it holds, too.
+void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held = 0);
 
 /// Frames a second that a picture's file says; 0: it does not.
 double said_fps(const FileFacts& picture);

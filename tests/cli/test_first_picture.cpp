@@ -2,6 +2,8 @@
 // What a video takes of its first picture and of the video that it is made from: rate, shape of a pixel, marks.
 #include <OpenImageIO/imageio.h>
 
+#include <cstdint>
+
 #include "video_out_test.h"
 
 namespace afterglow::test {
@@ -19,6 +21,8 @@ class FirstPicture : public VideoOut {
       const int said[2] = {rate, 1};
       if (rate > 0) spec.attribute("FramesPerSecond", OIIO::TypeRational, said);
       spec.attribute("PixelAspectRatio", aspect);
+      const std::uint32_t code[2] = {0x01000000u + static_cast<std::uint32_t>(frame), 0};
+      spec.attribute("smpte:TimeCode", OIIO::TypeTimeCode, code);
       const std::string name = text("in/" + std::to_string(1000 + frame) + ".exr");
       const std::vector<float> grey(std::size_t{kWidth} * kHeight * 3, 0.2f);
       const auto output = OIIO::ImageOutput::create(name);
@@ -64,6 +68,14 @@ TEST_F(FirstPicture, SaysTheShapeOfAPixel) {
   ASSERT_NO_FATAL_FAILURE(make_pictures(0, 4.0f / 3));
   make("b.mp4");
   EXPECT_EQ(stream_of("b.mp4").at("sample_aspect_ratio"), "4:3");
+}
+
+TEST_F(FirstPicture, WhereItFailsTheTimeCodeBeginsBeforeTheNext) {
+  ASSERT_NO_FATAL_FAILURE(make_pictures(24, 1));
+  write("in/1001.exr", "no picture");
+  const Outcome outcome = run({"run", "look.lua", "in/####.exr", "-o", "a.mov"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_EQ(stream_of("a.mov").at("tags").at("timecode"), "01:00:00:01");
 }
 
 TEST_F(FirstPicture, PicturesOfAVideoStayItsDefault) {
