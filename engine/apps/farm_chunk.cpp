@@ -75,6 +75,7 @@ Result<void> join_pieces(const farm::Job& job, const RunEvents& events) {
     AFTERGLOW_TRY(FrameList list, list_frames(request.files, events.diagnostics));
     std::ranges::move(list.jobs, std::back_inserter(frames));
   }
+  if (job.holds_missing) hold_missing(frames);
   AFTERGLOW_CHECK(join_parts(request, frames, parts, events));
   std::error_code ignored;
   std::filesystem::remove_all(job.folder / "pieces", ignored);

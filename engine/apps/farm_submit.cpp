@@ -69,6 +69,8 @@ Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, c
   if (!given.empty() || is_file(shipped))
     AFTERGLOW_CHECK(farm::pack_file(given.empty() ? shipped : fs::path(given), "look/calibration.json", job));
   job.run = arguments.packed_words(request.preset, job.folder);
+  if (!arguments.run.fps && !job.video.empty())  // the same for every chunk, whose first picture is another
+    job.run.insert(job.run.begin(), fmt::format("--fps={}", request.loop.fps));
   job.environment["AFTERGLOW_PATH"] = "";
   if (const char* config = std::getenv("OCIO"); config && is_file(farm::packed_place(job.folder, config)))
     job.environment["OCIO"] = farm::packed_place(job.folder, config).string();
@@ -82,12 +84,13 @@ Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, c
 }  // namespace
 
 Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console& console) {
-  AFTERGLOW_TRY(const BatchRequest request, arguments.run.request());
+  AFTERGLOW_TRY(BatchRequest request, arguments.run.request());
   PlannedJob out{.files = request.files};
   AFTERGLOW_CHECK(check_streams(request.files));
   AFTERGLOW_TRY(FrameList list, list_frames(request.files, console.diagnostics()));
   out.frames = std::move(list.jobs);
   const bool video = is_one_output(request.files.output);
+  take_fps(request, out.frames);
   AFTERGLOW_CHECK(check_parts(request, out.frames, console.diagnostics()));
   tell_missing(out.frames, console.diagnostics());
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
@@ -98,6 +101,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   job.at = fs::current_path(ec);
   job.look = arguments.run.preset.file;
   if (video) job.video = (job.at / request.files.output).lexically_normal().string();
+  job.holds_missing = std::ranges::any_of(out.frames, [](const FrameJob& frame) { return frame.missing > 0; });
   job.pre_roll = look.pre_roll;
   job.needs = arguments.needs;
   job.chunks = farm::chunks_of(out.frames, frames_a_chunk(arguments, look));

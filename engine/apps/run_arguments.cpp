@@ -59,7 +59,9 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--frames", a.files.frames, "Frames to run: 1-24, 1-24x2, 1,5,10-12 (default: all there are)")
       ->type_name("LIST")
       ->group(sequence);
-  app.add_option("--fps", a.fps, "Frames a second, for animated presets (default 24)")
+  app.add_option(
+         "--fps", a.fps,
+         "Frames a second, for animated presets and videos (default: for videos what the first picture says, else 24)")
       ->check(above_zero())
       ->type_name("N")
       ->group(sequence);
@@ -195,7 +197,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--size", a.size},
           {"--region", a.region},
           {"--nan-policy", a.nan_policy == "neighbour" ? a.nan_policy : ""},
-          {"--fps", number(a.fps)},
+          {"--fps", number(a.fps.value_or(FrameLoopOptions{}.fps))},
           {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
           {"--type", a.type},
           {"--output-space", a.output_space},
@@ -241,7 +243,8 @@ Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_m
   options.nan_policy = nan_policy(a.nan_policy);
   options.keep_partial = a.keep_partial;
   options.fail_fast = a.fail_fast || options.nan_policy == NanPolicy::fail;
-  options.fps = a.fps;
+  options.fps = a.fps.value_or(options.fps);
+  options.takes_fps = !a.fps;
   options.max_memory = max_memory;
   options.read.layer = a.layers.layer;
   options.read.max_bytes = max_memory;

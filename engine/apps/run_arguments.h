@@ -22,7 +22,7 @@ struct RunArguments {
   std::string codec, bitrate, pixel_format, audio;
   std::optional<int> crf;
   bool keep_partial = false, keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;
-  double fps = 24;
+  std::optional<double> fps;
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;
 

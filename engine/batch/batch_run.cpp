@@ -12,7 +12,9 @@
 #include "batch/watch_run.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "core/text.h"
 #include "graph/history.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 namespace {
@@ -180,9 +182,27 @@ Result<void> run_frames(BatchRun& run) {
 
 }  // namespace
 
-Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report) {
+bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {
+  FrameLoopOptions& loop = request.loop;
+  if (!std::exchange(loop.takes_fps, false) || !is_one_output(request.files.output)) return false;
+  if (frames.empty() || frames.front().movie) return false;
+  const auto header = read_header(frames.front().input, loop.read);
+  if (!header) return false;  // told where it is read
+  const double said = said_fps(*header->facts);
+  if (said <= 0) return false;
+  loop.fps = said;
+  for (auto& [name, value] : request.pixel_options)
+    if (name == "--fps") value = number_text(loop.fps);
+  return true;
+}
+
+Result<void> run_batch(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
+  BatchRequest request = asked;
   BatchRun run{request, events, report};
   AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
+  if (take_fps(request, run.list.jobs))
+    events.note(fmt::format("{}: {} frames a second, as the first picture says", request.files.output,
+                            number_text(request.loop.fps)));
   if (run.list.more && request.resume)
     return Error{ErrorKind::usage, "--resume needs inputs that are files, not standard input"};
   for (const auto& job : run.list.jobs) report.frames.push_back({.job = job});

@@ -32,6 +32,9 @@ struct BatchRequest {
   std::filesystem::path locked;  ///< a lock that the run must agree with; empty: none
 };
 
+/// Sets the rate of a video (FrameLoopOptions::takes_fps) to that which its first picture says. Whether it says one.
+bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames);
+
 /// Runs it. `report` holds what is known when it returns, also after an error. Errors: usage, script, io, device,
 /// interrupted, as FrameLoop::run, Session::open, list_frames and the functions of lock.h and resume.h say.
 Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report);

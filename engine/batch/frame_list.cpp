@@ -213,6 +213,37 @@ Result<void> add_movie(const FrameListRequest& request, const OutputNames& names
   return {};
 }
 
+/// "3, 5-7": numbers between the files that have none; empty: all are there.
+std::string missing_text(const std::vector<FrameFile>& files) {
+  constexpr std::size_t kMostNamed = 8;
+  std::vector<std::string> gaps;
+  for (std::size_t i = 1; i < files.size() && gaps.size() <= kMostNamed; ++i) {
+    const int first = files[i - 1].frame + 1, last = files[i].frame - 1;
+    if (first <= last) gaps.push_back(first == last ? std::to_string(first) : fmt::format("{}-{}", first, last));
+  }
+  if (gaps.size() > kMostNamed) gaps.back() = "…";
+  return join(gaps);
+}
+
+/// Of a sequence that is taken whole. `held`: its frames keep their times. Errors: usage (a video without an end).
+Result<void> tell_missing(const std::string& input, const std::vector<FrameFile>& files, bool held,
+                          Diagnostics& diagnostics) {
+  constexpr int kMostPlaces = 1'000'000;  // as many as a list of frames may name
+  const std::string missing = missing_text(files);
+  if (missing.empty()) return {};
+  const int first = files.front().frame, last = files.back().frame;
+  if (held && last - first >= kMostPlaces)
+    return Error{ErrorKind::usage,
+                 fmt::format("frames {} to {} are more than {} places of a video", first, last, kMostPlaces), input, 0,
+                 "those that --frames names"};
+  const bool one = missing.find_first_of(",-", 1) == std::string::npos;
+  diagnostics.warn(fmt::format("{}: {} {} {} missing{}", input, one ? "frame" : "frames", missing, one ? "is" : "are",
+                               !held ? ""
+                               : one ? "; the one before is held"
+                                     : "; those before are held"));
+  return {};
+}
+
 Result<void> add_files(const FrameListRequest& request, const OutputNames& names, const std::string& input,
                        const std::optional<std::vector<int>>& frames, FrameList& list, Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
@@ -221,11 +252,14 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
   if (frames && !pattern.numbered)
     return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
   AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
+  const bool held = names.takes_all() && request.inputs.size() == 1;
+  if (pattern.numbered && !frames) AFTERGLOW_CHECK(tell_missing(input, files, held, diagnostics));
   for (const auto& [frame, file] : files) {
     AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : name_without_number(file), {frame, file}));
     job.output = names.name(file, frame);
     list.jobs.push_back(std::move(job));
   }
+  if (pattern.numbered && !frames && held) hold_missing(list.jobs);
   return {};
 }
 
@@ -252,6 +286,11 @@ Result<void> add_standard_input(const FrameListRequest& request, const OutputNam
 }
 
 }  // namespace
+
+void hold_missing(std::vector<FrameJob>& jobs) {
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    jobs[i].missing = static_cast<std::size_t>(jobs[i].frame - jobs.front().frame) - i;
+}
 
 Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diagnostics) {
   std::optional<std::vector<int>> frames;

@@ -28,6 +28,7 @@ struct FrameJob {
   std::optional<double> time{};                  ///< of a video's frame, in seconds from the first
   double fps = 0;                                ///< of the video; 0: unknown
   bool passing = false;                          ///< from a stream: its pixels go when it is done
+  std::size_t missing = 0;                       ///< frames before it that are not there; a video holds their places
   std::vector<std::filesystem::path> earlier{};  ///< files of earlier frames that the output depends on
 
   /// Every file that the output is made from.
@@ -67,8 +68,12 @@ struct FrameList {
   std::shared_ptr<const MemoryFile> file;  ///< what came on standard input, when it is a job's file
 };
 
-/// Opens videos and standard input. Errors: usage (a plain output for several frames, two inputs for one output, an
-/// output that is an input), io (nothing matches, no place for the outputs).
+/// Counts FrameJob::missing in the frames of one sequence, which rise.
+void hold_missing(std::vector<FrameJob>& jobs);
+
+/// Opens videos and standard input. Warns of frames that are missing in sequences that are taken whole; where one goes
+/// into a video alone, their places are held. Errors: usage (a plain output for several frames, two inputs for one
+/// output, an output that is an input), io (nothing matches, no place for the outputs).
 Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diagnostics);
 
 }  // namespace afterglow

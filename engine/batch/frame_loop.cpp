@@ -48,6 +48,7 @@ Result<void> FrameLoop::run(Schedule& schedule) {
   const auto& frames = schedule.frames;
   pre_roll_ = schedule.earlier.size();
   total_ = frames.size() - pre_roll_;
+  places_ = frames.empty() ? 0 : frames.back().index + 1;
   endless_ = static_cast<bool>(schedule.more);
   const auto start = Clock::now();
   std::deque<std::unique_ptr<Reading>> next;
@@ -92,7 +93,7 @@ bool FrameLoop::fetch(Schedule& schedule, std::size_t place) {
     return false;
   }
   schedule.frames.push_back({*record, false, false, place - pre_roll_});
-  total_ = schedule.frames.size() - pre_roll_;
+  places_ = total_ = schedule.frames.size() - pre_roll_;
   return true;
 }
 
@@ -100,7 +101,7 @@ bool FrameLoop::fetch(Schedule& schedule, std::size_t place) {
 /// wished.
 Result<void> FrameLoop::finish_sink(const Result<void>& result) {
   const bool keeps = !result && result.error().kind == ErrorKind::interrupted && options_.keep_partial;
-  return result || keeps ? sink_.finish(keeps ? 0 : total_) : Result<void>();
+  return result || keeps ? sink_.finish(keeps ? 0 : places_) : Result<void>();
 }
 
 /// Waits for the last output and sums up.

@@ -75,7 +75,8 @@ class FrameLoop {
   WriteQueue writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
-  bool endless_ = false;  ///< nobody knows how many frames will come
+  std::size_t places_ = 0;  ///< of frames that are written, with those of missing ones
+  bool endless_ = false;    ///< nobody knows how many frames will come
   std::optional<Error> stream_error_;
   bool overlap_ = false;
   std::size_t most_read_ = 1;      ///< frames that are being read beside the one that is processed

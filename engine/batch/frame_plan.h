@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "batch/frame_sink.h"
-#include "image/scale.h"
 #include "image/reader.h"
+#include "image/scale.h"
 #include "image/writer.h"
 #include "session/session.h"
 
@@ -21,6 +21,7 @@ struct FrameLoopOptions {
   std::optional<Rect> region;    ///< part of the display window that is wanted
   bool reuse = true;             ///< pictures that were just run are not run again
   double fps = 24;
+  bool takes_fps = false;  ///< nobody asked for one: a video takes that of its first picture, where it says one
   std::uint64_t max_memory = 6ull << 30;
   bool fail_fast = false;
   bool whole_pre_roll = false;  ///< an earlier frame that cannot be read ends the run: what follows would be another

@@ -41,8 +41,8 @@ class FrameSink {
   /// --max-memory.
   virtual std::uint64_t bytes_of_frame(const FrameJob&, Size, bool /*has_alpha*/, const FileFacts*) const { return 0; }
   virtual std::uint64_t bytes_held(Size) const { return 0; }
-  /// All that can come has come, of so many frames that were asked for: what was written appears. Without this call it
-  /// goes.
+  /// All that can come has come, of so many frames that were asked for (0: of those that came): what was written
+  /// appears. Without this call it goes.
   virtual Result<void> finish(std::size_t /*frames*/) { return {}; }
   /// What the look is, for notes that --resume reads.
   virtual void record_look(const Hash&) {}

@@ -32,7 +32,7 @@ Result<WholeVideo> whole_video(const BatchRequest& request, const std::vector<Fr
   times.begin(frames.front(), out.plan);
   AFTERGLOW_TRY(out.plan.patience, patience_of_process());
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    AFTERGLOW_TRY(const VideoTime time, times.of(frames[i], i));
+    AFTERGLOW_TRY(const VideoTime time, times.of(frames[i], i + frames[i].missing));
     out.times.push_back(time);
   }
   out.whole = times.whole();

@@ -83,7 +83,7 @@ namespace {
 Schedule counted(Schedule schedule) {
   std::size_t index = 0;
   for (auto& frame : schedule.frames)
-    if (!frame.pre_roll) frame.index = index++;
+    if (!frame.pre_roll) frame.index = index++ + frame.record->job.missing;
   return schedule;
 }
 

@@ -14,7 +14,7 @@ struct ScheduledFrame {
   FrameRecord* record = nullptr;
   bool pre_roll = false;  ///< run for what it hands on; not written
   bool restart = false;   ///< no frame is before it
-  std::size_t index = 0;  ///< among those that are written
+  std::size_t index = 0;  ///< among those that are written, with the places of missing ones
 };
 
 struct Schedule {

@@ -116,10 +116,12 @@ class VideoBytes : public FrameBytes {
     AFTERGLOW_TRY(const PixelLayout* layout, asked());
     const bool deep = picture.facts && (picture.facts->floating || picture.facts->bits > 8);
     size_ = picture.display_window.size();
+    VideoPlan plan;
+    if (picture.facts) keep_facts(*picture.facts, plan);
+    aspect_ = plan.pixel_aspect;
     if (!layout && y4m_) layout = find_pixel_layout(deep ? "yuv444p10le" : "yuv444p");
     if (!layout)
       layout = find_pixel_layout(picture.has_alpha ? deep ? "rgba64le" : "rgba" : deep ? "rgb48le" : "rgb24");
-    VideoPlan plan;
     plan.pack.layout = layout;
     AFTERGLOW_CHECK(check_video_size(plan, size_, kName));
     rules_.layout = layout;
@@ -136,8 +138,10 @@ class VideoBytes : public FrameBytes {
   Result<std::string> frame(const Picture& picture) override {
     const Size size = picture.display_window.size();
     if (size != size_)
-      return stream_usage(fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
-                                      size.height, size_.width, size_.height));
+      return Error{ErrorKind::io,
+                   fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
+                               size.height, size_.width, size_.height),
+                   kName};
     if (!rules_.layout->alpha && !warned_ && has_transparency(picture)) {
       warned_ = true;
       diagnostics_.warn(fmt::format("{}: {} has no alpha; the pictures are put on black", kName, rules_.layout->name));
@@ -152,13 +156,13 @@ class VideoBytes : public FrameBytes {
   std::string header(const PixelLayout& layout) const {
     const char* chroma = layout.chroma_y > 0 ? "420" : layout.chroma_x > 0 ? "422" : "444";
     const std::string bits = layout.bits > 8 ? fmt::format("p{}", layout.bits) : layout.chroma_y > 0 ? "mpeg2" : "";
-    return fmt::format("YUV4MPEG2 W{} H{} F{}:{} Ip A1:1 C{}{} XCOLORRANGE=LIMITED\n", size_.width, size_.height,
-                       rate_.numerator, rate_.denominator, chroma, bits);
+    return fmt::format("YUV4MPEG2 W{} H{} F{}:{} Ip A{}:{} C{}{} XCOLORRANGE=LIMITED\n", size_.width, size_.height,
+                       rate_.numerator, rate_.denominator, aspect_.numerator, aspect_.denominator, chroma, bits);
   }
 
   bool y4m_;
   WriteOptions options_;
-  Rational rate_;
+  Rational rate_, aspect_{1, 1};
   Diagnostics& diagnostics_;
   PackRules rules_;
   Size size_;

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "batch/video_times.h"
 #include "image/metadata.h"
@@ -40,11 +41,13 @@ class VideoSink : public FrameSink {
     std::optional<Result<PackedFrame>> packed;
     if (VideoWriter* const writer = opened_.load()) packed = pack(*writer, picture);
     AFTERGLOW_CHECK(turn());
-    if (!writer_) AFTERGLOW_CHECK(begin(job, picture));
+    if (!writer_) AFTERGLOW_CHECK(begin(job, job.movie ? 0 : index, picture));
     AFTERGLOW_TRY(const VideoTime time, times_.of(job, index));
     if (!packed) packed = pack(*writer_, picture);
     AFTERGLOW_TRY(PackedFrame frame, std::move(*packed));
-    return writer_->write(std::move(frame), time);
+    AFTERGLOW_CHECK(write_last());
+    last_.emplace(std::move(frame), time);
+    return {};
   }
 
   /// By what the encoders of Debian 12 were seen to take: those that look ahead keep some forty frames, in several
@@ -59,7 +62,16 @@ class VideoSink : public FrameSink {
     return kBase + static_cast<std::uint64_t>(size.area()) * (ahead ? kAhead : kOthers) * sample;
   }
 
-  Result<void> finish(std::size_t) override { return writer_ ? writer_->finish(times_.whole()) : Result<void>(); }
+  /// The last frame holds the places of those behind it that failed: it comes once more.
+  Result<void> finish(std::size_t frames) override {
+    if (!writer_ || !last_) return {};
+    const auto held = times_.held(frames, last_->second);
+    std::optional<PackedFrame> again;
+    if (held) again = last_->first;
+    AFTERGLOW_CHECK(write_last());
+    if (held) AFTERGLOW_CHECK(writer_->write(std::move(*again), *held));
+    return writer_->finish(times_.whole());
+  }
 
  private:
   /// From any thread.
@@ -72,11 +84,16 @@ class VideoSink : public FrameSink {
     }
     return writer.pack(picture);
   }
-  Result<void> begin(const FrameJob& job, const Picture& picture) {
+  Result<void> write_last() {
+    if (!last_) return {};
+    auto [frame, time] = *std::exchange(last_, std::nullopt);
+    return writer_->write(std::move(frame), time);
+  }
+  Result<void> begin(const FrameJob& job, std::size_t held, const Picture& picture) {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
     times_.begin(job, plan);
-    if (picture.facts) keep_facts(*picture.facts, plan);
+    if (picture.facts) keep_facts(*picture.facts, plan, held);
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
     opened_ = writer_.get();
@@ -88,8 +105,9 @@ class VideoSink : public FrameSink {
   VideoTimes times_;
   Diagnostics& diagnostics_;
   std::unique_ptr<VideoWriter> writer_;
-  std::atomic<VideoWriter*> opened_ = nullptr;  ///< the same, for frames whose turn has not come
-  std::atomic<bool> warned_ = false;            ///< of alpha, which nobody looks for any more
+  std::optional<std::pair<PackedFrame, VideoTime>> last_;  ///< that waits for what comes behind it
+  std::atomic<VideoWriter*> opened_ = nullptr;             ///< the same, for frames whose turn has not come
+  std::atomic<bool> warned_ = false;                       ///< of alpha, which nobody looks for any more
 };
 
 }  // namespace

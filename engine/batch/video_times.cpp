@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "image/movie.h"
 
@@ -37,7 +38,8 @@ void VideoTimes::begin(const FrameJob& first, VideoPlan& plan) {
 
 Result<VideoTime> VideoTimes::of(const FrameJob& job, std::size_t index) {
   if (has_times(job) != static_cast<bool>(movie_) || (movie_ && job.movie != movie_)) return of_one();
-  if (!movie_) return VideoTime{static_cast<long long>(index), 1};
+  // Frames that failed before the first one that came are held by it.
+  if (!movie_) return VideoTime{std::exchange(begun_, true) ? static_cast<long long>(index) : 0, 1};
   const auto& pts = movie_->facts().pts;
   const auto at = static_cast<std::size_t>(job.movie_frame);
   if (last_ >= job.movie_frame) return of_one();
@@ -45,6 +47,11 @@ Result<VideoTime> VideoTimes::of(const FrameJob& job, std::size_t index) {
   whole_ = at + 1 == pts.size();
   const long long mean = std::max(1LL, (pts.back() - pts.front()) / std::max<long long>(1, pts.size() - 1));
   return VideoTime{pts[at] - start_, whole_ ? mean : pts[at + 1] - pts[at]};
+}
+
+std::optional<VideoTime> VideoTimes::held(std::size_t frames, VideoTime last) const {
+  const auto end = static_cast<long long>(frames) - 1;
+  return !movie_ && end > last.pts ? std::optional(VideoTime{end, 1}) : std::nullopt;
 }
 
 }  // namespace afterglow

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "batch/frame_list.h"
 #include "image/video_writer.h"
@@ -19,6 +20,8 @@ class VideoTimes {
   void begin(const FrameJob& first, VideoPlan& plan);
   /// `index`: its place among those that were asked for. Errors: usage (frames of several videos, or backwards).
   Result<VideoTime> of(const FrameJob& job, std::size_t index);
+  /// That of the last place of `frames`, where the one that was written last is to stay until then.
+  std::optional<VideoTime> held(std::size_t frames, VideoTime last) const;
   /// The last frame of their video was among them, or they have none.
   bool whole() const { return whole_; }
 
@@ -30,7 +33,7 @@ class VideoTimes {
   std::shared_ptr<Movie> movie_;  ///< that the frames come from
   long long start_ = 0;           ///< time stamp of its first frame that is written
   int last_ = -1;                 ///< its frame that was written last
-  bool whole_ = true;
+  bool begun_ = false, whole_ = true;
 };
 
 }  // namespace afterglow

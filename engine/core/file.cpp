@@ -91,6 +91,12 @@ std::vector<std::string> names_in(const fs::path& folder) {
 
 Error missing_file(const fs::path& path) {
   Error error{ErrorKind::io, "no such file", path.string()};
+  if (std::string name = path.filename().string(); name.find('@') != std::string::npos) {
+    std::ranges::replace(name, '@', '#');
+    error.message += "; the place of a frame's number is written #";
+    error.nearest = (path.parent_path() / name).string();
+    return error;
+  }
   if (looks_like_frame(path)) return error;
   const std::string near = nearest_name(path.filename().string(), names_beside(path));
   if (!near.empty()) error.nearest = (path.parent_path() / near).string();

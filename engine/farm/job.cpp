@@ -60,6 +60,7 @@ Json job_json(const Job& job) {
            {"pre_roll", job.pre_roll ? Json(*job.pre_roll) : Json(nullptr)},
            {"needs", needs_json(job.needs)},
            {"video", job.video},
+           {"holds_missing", job.holds_missing},
            {"chunks", Json::array()}};
   for (const auto& chunk : job.chunks) out["chunks"].push_back(chunk_json(chunk));
   return out;
@@ -78,6 +79,7 @@ Job job_of_json(const Json& json) {
   if (!json.at("pre_roll").is_null()) job.pre_roll = json.at("pre_roll").get<int>();
   job.needs = needs_of(json.at("needs"));
   job.video = json.at("video").get<std::string>();
+  job.holds_missing = json.value("holds_missing", false);
   for (const auto& chunk : json.at("chunks")) job.chunks.push_back(chunk_of(chunk));
   for (const auto& chunk : job.chunks)
     if (chunk.count < 1) throw std::invalid_argument("a chunk without frames");

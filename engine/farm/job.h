@@ -50,7 +50,8 @@ struct Job {
   std::optional<int> pre_roll;  ///< earlier frames that a chunk runs first; empty: no frame depends on others
   Needs needs;
   std::vector<Chunk> chunks;
-  std::string video;  ///< the one output, absolute, joined from a piece a chunk; empty: pictures
+  std::string video;           ///< the one output, absolute, joined from a piece a chunk; empty: pictures
+  bool holds_missing = false;  ///< of the video: see hold_missing
 
   std::size_t frames() const;
   /// Chunks, and behind them the joining of a video.

@@ -77,6 +77,8 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       if (interlaced) facts.decoder_bytes = saturated_product({area, 4, deep ? 2u : 1u});
     } else if (type == "sRGB") {
       facts.srgb = true;
+    } else if (type == "cICP" && length == 4) {
+      facts.codes = {data[0], data[1], data[3] == 0};
     } else if (type == "iCCP") {
       facts.icc = true;
     } else if (type == "gAMA" && length == 4 && number(0) > 0) {
@@ -122,7 +124,9 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   if (format == "cineon") AFTERGLOW_CHECK(check_cineon(file, in, size));
   if (format == "sgi") AFTERGLOW_CHECK(check_sgi(file, in, size));
   if (format == "gif") AFTERGLOW_CHECK(check_gif(file, in, size));
-  if (format == "webp") AFTERGLOW_CHECK(check_webp(file, in, size));
+  if (format == "webp") {
+    AFTERGLOW_TRY(facts.profile, check_webp(file, in, size));
+  }
   if (format == "tiff") AFTERGLOW_CHECK(check_tiff(file, in, size));
   if (format == "targa") {
     AFTERGLOW_TRY(claimed, check_targa(file, in, size));

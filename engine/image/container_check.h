@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "core/geometry.h"
 #include "core/result.h"
@@ -22,6 +23,13 @@ struct ContainerFacts {
   bool icc = false;                         ///< PNG iCCP chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
   std::optional<Chromaticities> primaries;  ///< PNG cHRM
+  /// PNG cICP, nclx of HEIF and AVIF: numbers of ITU-T H.273.
+  struct Codes {
+    int primaries = 2, transfer = 2;
+    bool limited = false;  ///< samples have the range of video
+  };
+  std::optional<Codes> codes;
+  std::vector<std::uint8_t> profile;  ///< ICC, of WebP, HEIF and AVIF, whose reader does not pass it on
 };
 
 /// Errors: io (missing, folder, no regular file, empty, unreadable; PNG, JPEG or DPX that is malformed or ends too

@@ -126,6 +126,11 @@ Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, D
 
 std::string FfmpegCopy::time_code() const { return first_time_code(*input_); }
 
+int FfmpegCopy::disposition_of_pictures() const {
+  const int index = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  return index < 0 ? 0 : input_->streams[index]->disposition & ~AV_DISPOSITION_ATTACHED_PIC;
+}
+
 /// As far as they lie in the range.
 void FfmpegCopy::add_chapters() {
   AVFormatContext& out = output_.container();

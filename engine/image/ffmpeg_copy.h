@@ -31,6 +31,8 @@ class FfmpegCopy {
 
   /// Of the first picture in the file; empty: it has none.
   std::string time_code() const;
+  /// What its pictures are marked as: AV_DISPOSITION_….
+  int disposition_of_pictures() const;
   /// Writes what comes before `until` (microseconds of the output's clock).
   Result<void> copy(std::int64_t until);
 

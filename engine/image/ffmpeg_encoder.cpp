@@ -57,7 +57,7 @@ class FfmpegEncoder : public VideoEncoder {
     picture->color_trc = codec_->color_trc;
     picture->color_range = codec_->color_range;
     picture->chroma_location = codec_->chroma_sample_location;
-    picture->sample_aspect_ratio = {1, 1};
+    picture->sample_aspect_ratio = rational(plan_.pixel_aspect);
     durations_[time.pts] = time.duration;
     end_ = std::max<std::int64_t>(end_, time.pts + time.duration);
     if (const int code = avcodec_send_frame(codec_.get(), picture.get()); code < 0) return encoder_failed(code);
@@ -101,7 +101,7 @@ class FfmpegEncoder : public VideoEncoder {
     codec_->pix_fmt = is_palette() ? AV_PIX_FMT_PAL8 : av_get_pix_fmt(plan_.pack.layout->name);
     codec_->time_base = rational(plan_.time_base);
     codec_->framerate = rational(plan_.rate);
-    codec_->sample_aspect_ratio = {1, 1};
+    codec_->sample_aspect_ratio = rational(plan_.pixel_aspect);
     codec_->bit_rate = plan_.bitrate;
     codec_->thread_count = 0;
     use_small_pages();

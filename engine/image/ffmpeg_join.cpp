@@ -108,6 +108,8 @@ class FfmpegJoin {
     if (!parameters_ || avcodec_parameters_copy(parameters_.get(), &found) < 0)
       return Error{ErrorKind::io, "there is no memory to join it"};
     parameters_->bit_rate = plan_.bitrate;
+    if (parameters_->sample_aspect_ratio.num == 0)  // the container says it alone
+      parameters_->sample_aspect_ratio = input.stream().sample_aspect_ratio;
     if (!has_header(found.codec_id)) {
       av_freep(&parameters_->extradata);
       parameters_->extradata_size = 0;

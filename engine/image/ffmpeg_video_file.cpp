@@ -38,7 +38,8 @@ Result<void> FfmpegVideoFile::begin(const AVCodecParameters& frames, bool alpha,
   if (const int code = avcodec_parameters_copy(stream_->codecpar, &frames); code < 0) return stream_failed(code);
   stream_->time_base = rational(plan_.time_base);
   stream_->avg_frame_rate = rational(plan_.rate);
-  stream_->sample_aspect_ratio = stream_->codecpar->sample_aspect_ratio = {1, 1};
+  const AVRational aspect = frames.sample_aspect_ratio;
+  stream_->sample_aspect_ratio = stream_->codecpar->sample_aspect_ratio = aspect.num > 0 ? aspect : AVRational{1, 1};
   if (plan_.codec == "vp9" && alpha) av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
   AFTERGLOW_CHECK(add_copies(name, diagnostics));
   add_time_code();
@@ -50,6 +51,7 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   const auto& from = sound_only ? plan_.audio : plan_.source;
   if (from.empty()) return {};
   AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, plan_.range, plan_.patience, name, diagnostics));
+  if (!sound_only) stream_->disposition = copy_->disposition_of_pictures();
   return {};
 }
 

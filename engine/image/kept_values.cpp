@@ -30,7 +30,7 @@ std::optional<Rational> fraction(std::string_view text) {
 }  // namespace
 
 std::optional<Rational> rate_of(const MetadataValue& value) {
-  constexpr double kMost = 10'000;
+  constexpr double kLeast = 0.001, kMost = 10'000;
   const MetadataValue* from = &value;
   std::optional<MetadataValue> read;
   if (const auto* text = std::get_if<std::string>(&value)) {
@@ -38,10 +38,10 @@ std::optional<Rational> rate_of(const MetadataValue& value) {
     if (!read) return std::nullopt;
     from = &*read;
   }
+  const double rate = metadata_number(*from, 0);
+  if (!(rate >= kLeast && rate <= kMost)) return std::nullopt;
   if (const auto* rational = std::get_if<Rational>(from))
     return rational->numerator > 0 && rational->denominator > 0 ? std::optional(*rational) : std::nullopt;
-  const double rate = metadata_number(*from, 0);
-  if (!(rate > 0) || rate > kMost) return std::nullopt;
   // Whole numbers, those of television, and else thousandths.
   constexpr double kNear = 5e-4;
   if (std::abs(rate - std::round(rate)) < kNear) return Rational{static_cast<int>(std::lround(rate)), 1};

@@ -123,15 +123,22 @@ void fill_in(MovieFacts& facts) {
                                               : "BT.709"));
 }
 
+bool use_codes(int primaries, int transfer, ColorEncoding& encoding) {
+  const auto known = primaries_of(primaries);
+  const bool said = known || primaries == 1 || primaries == kUnsaid;
+  if (!said || (transfer != kUnsaid && !is_known_transfer(transfer))) return false;
+  if (transfer != kUnsaid) use_transfer(encoding, transfer);
+  if (!known || encoding.grey) return true;
+  const Matrix3 matrix = to_rec709(*known);
+  if (!nearly_equal(matrix, kIdentity, 1e-6)) encoding.matrix = matrix;
+  return true;
+}
+
 ColorEncoding movie_encoding(const MovieFacts& facts) {
   ColorEncoding encoding;
   encoding.dense = true;
   encoding.alpha = facts.has_alpha ? AlphaKind::straight : AlphaKind::none;
-  use_transfer(encoding, facts.color.transfer);
-  if (const auto primaries = primaries_of(facts.color.primaries)) {
-    const Matrix3 matrix = to_rec709(*primaries);
-    if (!nearly_equal(matrix, kIdentity, 1e-6)) encoding.matrix = matrix;
-  }
+  use_codes(facts.color.primaries, facts.color.transfer, encoding);
   return encoding;
 }
 

@@ -11,6 +11,10 @@ namespace afterglow {
 /// still pictures are sRGB; anything else is BT.709, or BT.601 when it is no larger than standard definition.
 void fill_in(MovieFacts& facts);
 
+/// Curve and primaries by their numbers in H.273, over what `encoding` has; 2 leaves them. False: one has no meaning
+/// here, and nothing is changed.
+bool use_codes(int primaries, int transfer, ColorEncoding& encoding);
+
 /// From stored RGB to light of the scene: curves of cameras are undone (BT.709, BT.601, BT.2020: the camera's curve,
 /// not a display's), PQ and HLG as the input spaces "pq" and "hlg". `facts` are filled in.
 ColorEncoding movie_encoding(const MovieFacts& facts);

@@ -14,6 +14,7 @@
 #include "image/heif_check.h"
 #include "image/icc_profile.h"
 #include "image/input_space.h"
+#include "image/movie_color.h"
 #include "image/oiio_metadata.h"
 
 namespace afterglow {
@@ -44,7 +45,7 @@ class OiioFile : public PictureFile {
 
   Result<void> open(const std::string& format, const SizeLimits& limits) {
     try {
-      if (format == "heif") AFTERGLOW_CHECK(check_heif(path_));
+      if (format == "heif") AFTERGLOW_CHECK(check_heif(path_, container_));
       AFTERGLOW_CHECK(open_input(format));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
@@ -93,8 +94,14 @@ class OiioFile : public PictureFile {
     const bool integer = !type.is_floating_point();
     if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
     encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
+    const bool png = container_.kind == ContainerFacts::Kind::png;
+    if (png && container_.codes) {
+      if (use_numbers(encoding, diagnostics)) return encoding;  // before iCCP, as PNG has it
+    }
     if (use_profile(spec, encoding, diagnostics)) return encoding;
-    if (container_.kind == ContainerFacts::Kind::png) {
+    if (!png && container_.codes) {
+      use_numbers(encoding, diagnostics);
+    } else if (png) {
       use_png_chunks(encoding, diagnostics);
     } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
@@ -112,7 +119,7 @@ class OiioFile : public PictureFile {
     const OIIO::TypeDesc type = sample_type(color);
     facts.floating = type.is_floating_point();
     facts.bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(type.size()) * 8);
-    facts.had_profile = spec.find_attribute("ICCProfile") != nullptr;
+    facts.had_profile = spec.find_attribute("ICCProfile") != nullptr || !container_.profile.empty();
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
         facts.color_channels[i] =
@@ -179,13 +186,28 @@ class OiioFile : public PictureFile {
   }
 
   bool use_profile(const OIIO::ImageSpec& spec, ColorEncoding& encoding, Diagnostics& diagnostics) const {
-    const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
-    if (!profile) return false;
-    const auto* bytes = static_cast<const std::uint8_t*>(profile->data());
-    const auto used =
-        use_icc_profile({bytes, static_cast<std::size_t>(profile->type().size())}, encoding.grey ? 1 : 3, encoding);
+    const OIIO::ParamValue* passed = spec.find_attribute("ICCProfile");
+    std::span<const std::uint8_t> profile = container_.profile;
+    if (passed)
+      profile = {static_cast<const std::uint8_t*>(passed->data()), static_cast<std::size_t>(passed->type().size())};
+    if (profile.empty()) return false;
+    const auto used = use_icc_profile(profile, encoding.grey ? 1 : 3, encoding);
     if (!used) diagnostics.warn(fmt::format("{}: {}; the profile is ignored", path_.string(), used.error().message));
     return used.ok();
+  }
+
+  /// Numbers of H.273. False: they have no meaning here.
+  bool use_numbers(ColorEncoding& encoding, Diagnostics& diagnostics) const {
+    const auto& [primaries, transfer, limited] = *container_.codes;
+    const bool used = use_codes(primaries, transfer, encoding);
+    if (!used)
+      diagnostics.warn(
+          fmt::format("{}: its colours (primaries {}, transfer {} of H.273) are not known; they are ignored",
+                      path_.string(), primaries, transfer));
+    if (limited)
+      diagnostics.warn(fmt::format("{}: says that its samples have the range of video; they are read as of full range",
+                                   path_.string()));
+    return used;
   }
 
   /// PNG's own rules: iCCP before sRGB before gAMA and cHRM.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -88,6 +89,28 @@ void describe_color(OIIO::ImageSpec& spec, const StripForm& form, const FileFact
                    profile.data());
 }
 
+/// DPX has words for these; it would take an old file's else.
+const char* film_transfer(const StripForm& form) {
+  const std::string_view space = form.space ? form.space->name() : "srgb";
+  return space == "linear"   ? "Linear"
+         : space == "cineon" ? "Logarithmic"
+         : space == "rec709" ? "ITU-R 709-4"
+                             : "User defined";
+}
+
+/// Without a unit the two resolutions say the shape of a pixel alone: JPEG's are its width and height, TIFF's are dots
+/// across and down.
+void describe_shape(OIIO::ImageSpec& spec, bool widths) {
+  constexpr float kDots = 72, kMost = 100;
+  const std::string unit = lower(spec.get_string_attribute("ResolutionUnit"));
+  const float ratio = spec.get_float_attribute("PixelAspectRatio", 1);
+  if (unit.starts_with("in") || unit.starts_with("cm") || unit == "m" || ratio == 1) return;
+  if (!(ratio > 1 / kMost && ratio < kMost)) return;
+  spec.attribute("XResolution", std::round(widths ? kDots * ratio : kDots));
+  spec.attribute("YResolution", std::round(widths ? kDots : kDots * ratio));
+  spec.attribute("ResolutionUnit", "none");
+}
+
 Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& format, const StripForm& form,
                                  const WriteOptions& options) {
   OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, form.alpha ? 4 : 3,
@@ -101,6 +124,7 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
   AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   switch (format.kind) {
     case OutputKind::dpx:
+      spec.attribute("dpx:Transfer", film_transfer(form));
       spec.attribute("oiio:BitsPerSample", std::bit_width(static_cast<unsigned>(max_code(form.type))));
       break;
     case OutputKind::targa:
@@ -109,10 +133,13 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
     case OutputKind::jpeg:
       spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
+      describe_shape(spec, true);
       break;
     case OutputKind::tiff:
       spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression));
       spec.attribute("tiff:zipquality", kTiffZipLevel);
+      if (form.type == SampleType::half) spec.attribute("tiff:half", 1);  // else floats are written
+      describe_shape(spec, false);
       break;
     default:
       break;

@@ -2,6 +2,7 @@
 #include "image/output_metadata.h"
 
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
@@ -55,6 +56,24 @@ constexpr std::array<std::string_view, 35> kDropped{"compression",
 constexpr std::array<std::string_view, 9> kDroppedFamilies{
     "oiio:", "openexr:", "png:", "jpeg:", "tiff:", "iccprofile:", "thumbnail", "gif:", "webp:"};
 
+/// Of film scans (dpx:, cineon:), what is no word about the old file's samples.
+constexpr std::array<std::string_view, 16> kFilmFacts{"framerate",
+                                                      "temporalframerate",
+                                                      "frameposition",
+                                                      "sequencelength",
+                                                      "heldcount",
+                                                      "shutterangle",
+                                                      "frameid",
+                                                      "slateinfo",
+                                                      "format",
+                                                      "filmedgecode",
+                                                      "sourcedatetime",
+                                                      "sourceimagefilename",
+                                                      "inputdevice",
+                                                      "inputdevicemodelnumber",
+                                                      "inputdeviceserialnumber",
+                                                      "userbits"};
+
 /// What libraries write once more by themselves, beside the first name.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kTwice{
     {{"Artist", "IPTC:Creator"}, {"Copyright", "IPTC:CopyrightNotice"}, {"ImageDescription", "IPTC:Caption"}}};
@@ -64,6 +83,19 @@ bool is_said_twice(const Metadata& metadata, const std::string& name) {
       kTwice, [&](const auto& pair) { return pair.second == name && find_metadata(metadata, pair.first); });
 }
 
+/// Names that mean nothing in an EXR: they are its owner's there. A "version" of 1 is that of deep parts.
+bool is_own(const std::string& name, const Imf::Attribute& attribute) {
+  const auto* version = dynamic_cast<const Imf::IntAttribute*>(&attribute);
+  const std::string plain = lower(name);
+  return plain == "gamma" || plain == "hash" || (plain == "version" && !(version && version->value() == 1));
+}
+
+/// The white that the old primaries had.
+bool is_of_old_primaries(const std::string& name, const Imf::Header& from) {
+  return name == "adoptedNeutral" && Imf::hasChromaticities(from) &&
+         !(Imf::chromaticities(from) == Imf::Chromaticities());
+}
+
 /// PNG's limit for a keyword, and a size above which a text is no description any more.
 constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
@@ -71,6 +103,9 @@ constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
 bool keeps_metadata(std::string_view name) {
   const std::string plain = lower(name);
+  for (const std::string_view family : {"dpx:", "cineon:"})
+    if (plain.starts_with(family))
+      return std::ranges::find(kFilmFacts, std::string_view(plain).substr(family.size())) != kFilmFacts.end();
   return std::find(kDropped.begin(), kDropped.end(), plain) == kDropped.end() &&
          !starts_with_any(plain, kDroppedFamilies);
 }
@@ -100,7 +135,9 @@ Metadata kept_metadata(const FileFacts& facts) {
 void add_kept_attributes(Imf::Header& header, const FileFacts& facts) {
   if (facts.exr_header) {
     for (auto it = facts.exr_header->begin(); it != facts.exr_header->end(); ++it)
-      if (keeps_metadata(it.name())) header.insert(it.name(), it.attribute());
+      if ((keeps_metadata(it.name()) || is_own(it.name(), it.attribute())) &&
+          !is_of_old_primaries(it.name(), *facts.exr_header))
+        header.insert(it.name(), it.attribute());
   } else {
     add_metadata(header, kept_metadata(facts));
   }

@@ -95,6 +95,19 @@ Error non_finite_error(const Picture& picture, const fs::path& file) {
           file.string()};
 }
 
+/// Colours that the way to Rec.709 made negative. A few are noise; primaries of older television are too near for a
+/// word.
+void report_gamut(const Picture& picture, const ColorEncoding& encoding, const fs::path& file,
+                  Diagnostics& diagnostics) {
+  constexpr std::uint64_t kFew = 1000;  // one in so many pixels
+  constexpr double kNear = 0.1;
+  const bool wide = encoding.transform || (encoding.matrix && !nearly_equal(*encoding.matrix, kIdentity, kNear));
+  const std::uint64_t negative = picture.sanitized.negative;
+  if (!wide || negative * kFew <= static_cast<std::uint64_t>(picture.color.size().area())) return;
+  diagnostics.warn_once("outside Rec.709", fmt::format("{}: {} samples are of colours outside Rec.709; they end at 0",
+                                                       file.string(), negative));
+}
+
 void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diagnostics& diagnostics) {
   const SanitizeCounts& counts = picture.sanitized;
   std::vector<std::string> parts;
@@ -243,6 +256,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     picture.auxiliary.emplace(extra.name, std::move(image));
   }
   if (policy == NanPolicy::fail && !picture.non_finite.empty()) return non_finite_error(picture, plan.file->path());
+  report_gamut(picture, encoding, plan.file->path(), diagnostics);
   report(picture, policy, plan.file->path(), diagnostics);
   return picture;
 }

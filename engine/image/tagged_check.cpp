@@ -94,13 +94,17 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
   return packed ? text_fault(key, inflated(rest)) : text_fault(key, rest);
 }
 
-Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
+Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
+  Buffer profile;
   for (std::uint64_t at = 12; at + 8 <= size;) {
     const Buffer head = bytes_at(in, at, 8);
     if (head.size() < 8) break;
     const std::uint64_t length = little_endian(&head[4], 4);
-    if (std::string_view(reinterpret_cast<const char*>(head.data()), 4) == "EXIF") {
-      if (length > kMostMetadata) return malformed(file, "has more than 16 MiB of metadata in one piece");
+    const std::string_view type(reinterpret_cast<const char*>(head.data()), 4);
+    if ((type == "EXIF" || type == "ICCP") && length > kMostMetadata)
+      return malformed(file, "has more than 16 MiB of metadata in one piece");
+    if (type == "ICCP" && profile.empty()) profile = bytes_at(in, at + 8, length);
+    if (type == "EXIF") {
       const Buffer chunk = bytes_at(in, at + 8, length);
       // The reader skips six bytes, whatever they are.
       if (const char* why = exif_fault(Bytes(chunk).subspan(std::min<std::size_t>(chunk.size(), 6))))
@@ -108,7 +112,7 @@ Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, st
     }
     at += 8 + length + (length & 1);
   }
-  return {};
+  return profile;
 }
 
 Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {

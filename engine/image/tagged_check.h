@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 
@@ -13,8 +14,9 @@ namespace afterglow {
 
 /// Of a PNG's chunk, whose data begin at `at`: what is wrong, or null.
 const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::uint64_t at, std::uint64_t length);
+/// Its ICC profile; empty: it has none. Errors: io.
+Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
 /// Errors: io.
-Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
 Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
 
 }  // namespace afterglow

@@ -10,6 +10,8 @@
 #include <numeric>
 
 #include "core/text.h"
+#include "image/kept_values.h"
+#include "image/output_metadata.h"
 #include "image/time_code.h"
 
 namespace afterglow {
@@ -258,9 +260,35 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   return plan;
 }
 
-void keep_facts(const FileFacts& first, VideoPlan& plan) {
+namespace {
+
+/// The simplest fraction that is as near as pictures say it.
+Rational simple_ratio(float ratio) {
+  constexpr int kMost = 1000;
+  constexpr float kShapes = 100, kNear = 1e-4f;
+  if (!(ratio > 1 / kShapes && ratio < kShapes)) return {1, 1};
+  int below = 1;
+  const auto above = [&] { return std::lround(ratio * static_cast<float>(below)); };
+  while (below < kMost && std::abs(static_cast<float>(above()) / static_cast<float>(below) - ratio) > kNear * ratio)
+    ++below;
+  return {static_cast<int>(above()), below};
+}
+
+}  // namespace
+
+void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held) {
   const MetadataValue* code = find_metadata(first.metadata, kTimeCodeName);
   plan.time_code = code ? metadata_text(*code) : "";
+  if (held > 0) plan.time_code = time_code_after(plan.time_code, -static_cast<long long>(held), plan.rate);
+  const Metadata kept = kept_metadata(first);
+  if (const MetadataValue* aspect = find_metadata(kept, "PixelAspectRatio"))
+    plan.pixel_aspect = simple_ratio(metadata_number(*aspect, 1));
+}
+
+double said_fps(const FileFacts& picture) {
+  const MetadataValue* said = find_metadata(picture.metadata, "FramesPerSecond");
+  const auto rate = said ? rate_of(*said) : std::nullopt;
+  return rate ? static_cast<double>(rate->numerator) / rate->denominator : 0;
 }
 
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file) {

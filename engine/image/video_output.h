@@ -42,6 +42,7 @@ struct VideoPlan {
   int primaries = 2, transfer = 2, matrix = 2;  ///< of ITU-T H.273; 2: not said
   bool exact = false;                           ///< what goes in comes out
   Size size;
+  Rational pixel_aspect{1, 1};   ///< width of a pixel to its height
   Rational rate{24, 1};          ///< frames a second, on the average
   Rational time_base{1, 24};     ///< seconds of a time stamp's unit
   std::filesystem::path audio;   ///< sound from here: --audio
@@ -56,8 +57,12 @@ struct VideoPlan {
 /// format that the codec does not have, options that it does not take.
 Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptions& options, bool deep, bool has_alpha);
 
-/// What a video keeps of the file of its first picture: the time code.
-void keep_facts(const FileFacts& first, VideoPlan& plan);
+/// What a video keeps of the file of its first picture: the time code, the shape of a pixel.
+/// `held`: places before it that it holds, too.
+void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held = 0);
+
+/// Frames a second that a picture's file says; 0: it does not.
+double said_fps(const FileFacts& picture);
 
 /// Sides that the pixel format cannot hold. Errors (usage).
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file);

@@ -36,7 +36,7 @@ Result<PackedFrame> VideoWriter::pack(const Picture& picture) {
   const Size size = picture.display_window.size();
   const std::string name = target_->file().string();
   if (size != plan_.size)
-    return Error{ErrorKind::usage,
+    return Error{ErrorKind::io,
                  fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
                              size.height, plan_.size.width, plan_.size.height),
                  name};

@@ -35,8 +35,7 @@ class VideoWriter {
                                                    Diagnostics& diagnostics);
 
   const VideoPlan& plan() const { return plan_; }
-  /// The picture as a frame of this video; from any thread, beside all else. Errors: usage (of another size), io (no
-  /// memory).
+  /// The picture as a frame of this video; from any thread, beside all else. Errors: io (of another size, no memory).
   Result<PackedFrame> pack(const Picture& picture);
   /// Frames come by rising times. Errors: io (disk full, …).
   Result<void> write(PackedFrame frame, VideoTime time);

@@ -169,7 +169,8 @@ TEST_F(VideoOut, FramesOfTwoSizes) {
   make_frames(2);
   write("in/1003.ppm", "P6\n64 36\n255\n" + codes_of(3, 64, 36));
   const Outcome outcome = make_video("a.mp4");
-  EXPECT_EQ(outcome.exit_code, kUsage);
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_EQ(make_video("-").exit_code, kFiles);
   EXPECT_THAT(outcome.err, HasSubstr("a frame has 64x36 pixels, the first had 96x64; a video has one size"));
   EXPECT_FALSE(fs::exists(path("a.mp4")));
   EXPECT_FALSE(has_leftovers());

@@ -187,6 +187,14 @@ TEST_F(FarmVideo, PicturesBecomeOneVideoToo) {
   EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("18 of 18 frames, 3 chunks and the join: 4 done"));
 }
 
+TEST_F(FarmVideo, PlacesOfMissingPicturesAreHeldToo) {
+  make_frames("in", 1, 20, 64, 48);
+  for (const char* name : {"in/shot.0003.exr", "in/shot.0011.exr"}) ASSERT_TRUE(fs::remove(path(name)));
+  make_look_back();
+  make_both("in/shot.####.exr", "a.mov");
+  EXPECT_TRUE(read("out/a.mov") == read("one/a.mov"));
+}
+
 TEST_F(FarmVideo, TheTimeCodeIsThatOfTheFirstPicture) {
   make_frames("in", 1, 16, 64, 48);
   for (int frame = 1; frame <= 16; ++frame) {
