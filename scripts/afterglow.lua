@@ -177,7 +177,7 @@ fx.curve = core.curve
 --- - `alpha` "straight" for effects that bend colour: their pixel shaders see it divided by its alpha. Default "associated".
 --- - `space` what light the effect is made for: "scene" (scene-linear, no upper end), "display" (display-linear, 0 to 1), or
 ---   { needs = …, makes = … } where it makes the other, as a tone curve does; a function of the settings may return these. `check` warns of
----   entries that get other light. Default: any.
+---   entries that get other light. Default: any. `view = true` beside `makes`: it stands for codes of a display's view, by the sRGB curve.
 --- - `settings` names and their types, in the order in which people see them
 --- - `active(s, length_scale)` false when the settings make the effect an identity, with the reason as second value; `true` as
 ---   third: people are warned, as when an input is missing (a file that is not given)
@@ -190,7 +190,7 @@ fx.curve = core.curve
 ---   `NAME = { when = function(s, source) … end, … }`; docs/writing_effects.md lists them. Nothing else relies on it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, alpha?: "associated"|"straight", detail?: boolean, space?: "scene"|"display"|{ needs?: "scene"|"display", makes?: "scene"|"display" }|(fun(s: table): any), settings?: table<string, afterglow.SettingType>, active?: (fun(s: table, length_scale: number): boolean, string?, boolean?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image, length_scale: number): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, alpha?: "associated"|"straight", detail?: boolean, space?: "scene"|"display"|{ needs?: "scene"|"display", makes?: "scene"|"display", view?: boolean }|(fun(s: table): any), settings?: table<string, afterglow.SettingType>, active?: (fun(s: table, length_scale: number): boolean, string?, boolean?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image, length_scale: number): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".

@@ -36,7 +36,7 @@ std::string cell(std::string_view text) {
 
 std::string space_text(const EffectSchema& effect) {
   if (effect.space_by_settings) return "Which light it is made for depends on its settings.";
-  const auto& [needs, makes] = effect.space;
+  const LightSpace needs = effect.space.needs, makes = effect.space.makes;
   if (needs == LightSpace::any && makes == LightSpace::any) return "Works on any light.";
   if (makes == LightSpace::any) return fmt::format("Made for {} light.", space_name(needs));
   return fmt::format("Takes {}{} light, makes {} light.", needs == LightSpace::any ? "" : space_name(needs),

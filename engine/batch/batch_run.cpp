@@ -46,9 +46,11 @@ std::string options_text(const PixelOptions& options) {
   return text;
 }
 
-/// Warns of entries that get other light than they are made for, in the frame that was evaluated last.
-Result<void> warn_of_light(BatchRun& run, const Build& build) {
+/// What light the entries get and make in the frame that was evaluated last: warns of those that get other light than
+/// they are made for.
+Result<void> follow_light(BatchRun& run, const Build& build, FrameLoop& loop) {
   AFTERGLOW_TRY(const auto spaces, run.session->preset().spaces());
+  if (ends_in_view(spaces)) loop.show_view();
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     if (spaces[i].warning.empty()) continue;
     const StackEntry& entry = (*build.entries)[i];
@@ -71,7 +73,7 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
     auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
     if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
     if (!build) return std::move(build).error();
-    if (i == 0) AFTERGLOW_CHECK(warn_of_light(run, **build));
+    if (i == 0) AFTERGLOW_CHECK(follow_light(run, **build, loop));
     const Graph& graph = (*build)->graph;
     if (!graph.histories.empty()) most = std::max(most.value_or(0), run.request.pre_roll.value_or(pre_roll(graph)));
   }

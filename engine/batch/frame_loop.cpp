@@ -292,6 +292,7 @@ Result<void> FrameLoop::finish_running() {
   const auto waiting = Clock::now();
   AFTERGLOW_CHECK(finish_writing(most_written_ - 1));
   frame.steps.waited_write = milliseconds_since(waiting);
+  picture.view = options_.view;
   writing_.add(frame, reading->index, std::move(picture));
   return {};
 }

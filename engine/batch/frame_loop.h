@@ -38,6 +38,8 @@ class FrameLoop {
   Result<std::shared_ptr<const Build>> inspect(const FrameJob& job);
   /// Pictures depend on the frames before them: see FrameLoopOptions.
   void follow_histories() { options_.histories = true; }
+  /// Pictures are those of a display's view: Picture::view.
+  void show_view() { options_.view = true; }
 
   std::uint64_t largest_need() const { return planner_.largest_need(); }
 

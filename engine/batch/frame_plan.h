@@ -20,6 +20,7 @@ struct FrameLoopOptions {
   std::optional<SizeWish> size;  ///< of the display window; pictures are scaled to it before the stack
   std::optional<Rect> region;    ///< part of the display window that is wanted
   bool reuse = true;             ///< pictures that were just run are not run again
+  bool view = false;             ///< what comes out is Picture::view
   double fps = 24;
   bool takes_fps = false;  ///< nobody asked for one: a video takes that of its first picture, where it says one
   std::uint64_t max_memory = 6ull << 30;

@@ -79,6 +79,7 @@ void describe_color(OIIO::ImageSpec& spec, const StripForm& form, const FileFact
     spec.attribute("oiio:ColorSpace", "Linear");
     return;
   }
+  if (form.view) return;
   if (space == "cineon") spec.attribute("oiio:ColorSpace", "KodakLog");
   if (space != "srgb") return;
   spec.attribute("oiio:ColorSpace", "sRGB");

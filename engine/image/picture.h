@@ -50,6 +50,9 @@ struct Picture {
   std::vector<std::uint16_t> halves;
   /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
   std::vector<std::uint8_t> unorm8;
+  /// Its light stands for codes of a display's view, by the sRGB curve: integers are those codes, and no file says that
+  /// they are sRGB.
+  bool view = false;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied
   Rect display_window;     ///< what a display format shows

@@ -19,7 +19,8 @@ StripForm strip_form(const Picture& picture, const OutputFormat& format, const W
           dithers(options, type),
           options.dither_x,
           options.dither_y,
-          stored_space(format, options, type)};
+          picture.view && !options.space ? nullptr : stored_space(format, options, type),
+          picture.view};
 }
 
 void encode_rows(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes) {

@@ -16,8 +16,9 @@ struct StripForm {
   SampleType type = SampleType::uint8;  ///< integers are codes (uint10 and uint12 in 16 bits), floats scene-linear
   bool alpha = false;                   ///< four samples a pixel, else three
   bool dither = false;
-  int dither_x = 0, dither_y = 0;  ///< where the upper left pixel lies in the noise
+  int dither_x = 0, dither_y = 0;      ///< where the upper left pixel lies in the noise
   const OutputSpace* space = nullptr;  ///< of integers; null: sRGB
+  bool view = false;                   ///< Picture::view: the codes of null are not said to be sRGB
 
   std::size_t sample_bytes() const { return type == SampleType::uint8 ? 1 : type == SampleType::float32 ? 4 : 2; }
   std::size_t row_bytes(const Picture& picture) const {

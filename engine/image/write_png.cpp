@@ -125,7 +125,7 @@ void write_header(const Picture& picture, const StripForm& form, OutputFile& out
   put_number(head, static_cast<std::uint32_t>(picture.display_window.height));
   head += {static_cast<char>(form.type == SampleType::uint16 ? 16 : 8), static_cast<char>(form.alpha ? 6 : 2), 0, 0, 0};
   write_chunk(out, "IHDR", head);
-  if (!form.space) {
+  if (!form.space && !form.view) {
     write_chunk(out, "sRGB", std::string(1, '\1'));  // relative colorimetric
     std::string gamma;
     put_number(gamma, 45455);

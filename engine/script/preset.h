@@ -33,7 +33,10 @@ struct EntrySpace {
   LightSpace before = LightSpace::scene;  ///< what it gets
   LightSpace behind = LightSpace::scene;  ///< what the next one gets
   std::string warning;                    ///< why it stands in the wrong place; empty: it does not
+  bool runs = true;                       ///< it is enabled and does something
 };
+/// Whether what comes out stands for codes of a display's view: SpaceUse::view of the last entry that makes light.
+bool ends_in_view(const std::vector<EntrySpace>& spaces);
 
 /// Where an entry counts, and how much: a mask with the settings of the last build.
 struct EntryMask {

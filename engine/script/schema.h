@@ -93,6 +93,7 @@ const char* space_name(LightSpace space);
 struct SpaceUse {
   LightSpace needs = LightSpace::any;  ///< any: whatever comes
   LightSpace makes = LightSpace::any;  ///< any: what came
+  bool view = false;                   ///< what it makes stands for codes of a display's view, by the sRGB curve
 };
 
 struct EffectSchema {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/text.h"
 #include "script/native.h"
 
@@ -10,6 +12,13 @@ namespace afterglow {
 
 const char* space_name(LightSpace space) {
   return space == LightSpace::scene ? "scene-linear" : space == LightSpace::display ? "display-linear" : "any";
+}
+
+bool ends_in_view(const std::vector<EntrySpace>& spaces) {
+  const auto last = std::ranges::find_if(spaces.rbegin(), spaces.rend(), [](const EntrySpace& space) {
+    return space.runs && space.use.makes != LightSpace::any;
+  });
+  return last != spaces.rend() && last->use.view;
 }
 
 namespace script {
@@ -32,7 +41,8 @@ LightSpace space_of(const std::string& what, const Value& given, const KeyPath& 
 // The use in a table; what is wrong with it is noted there.
 SpaceUse use_in(TableReader& table) {
   SpaceUse use;
-  table.allow({"makes", "needs"}, false);
+  table.allow({"makes", "needs", "view"}, false);
+  use.view = table.boolean("view").value_or(false);
   for (const auto& [key, space] : {std::pair{"needs", &use.needs}, {"makes", &use.makes}}) {
     try {
       *space = space_of(table.what() + ": " + key, table.value(key), {key});
@@ -102,6 +112,7 @@ std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs_now[i] = runs[i].entry.enabled && !inactive_reason(lua, runs[i]);
     out[i].use = use_of(lua, runs[i]);
+    out[i].runs = runs_now[i];
     out[i].before = out[i].behind = light;
     if (!runs_now[i]) continue;
     if (out[i].use.needs == LightSpace::scene && light == LightSpace::display)

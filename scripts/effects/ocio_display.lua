@@ -4,13 +4,14 @@
 -- the one that the variable OCIO of the environment names.
 -- The picture comes in linear Rec.709, which a configuration has under one of its usual names ("Linear Rec.709 (sRGB)", "lin_rec709", …) or by way
 -- of its role aces_interchange; `from` names another space for pictures that are not. What comes out are the display's codes; they are brought to light by
--- the sRGB curve, which the output encodes them with again: files of 8 and 16 bits hold exactly the view's codes, whatever display it is for.
+-- the sRGB curve, which the output encodes them with again (`view = true`): integers in files and videos are exactly the view's codes, whatever
+-- display it is for, and are not said to be sRGB.
 local fx = require "afterglow"
 
 return fx.effect {
   name = "ocio_display",
   doc = "The view of an OpenColorIO configuration, in place of a tone curve.",
-  at = "post_process", order = 200, alpha = "straight", space = { needs = "scene", makes = "display" },
+  at = "post_process", order = 200, alpha = "straight", space = { needs = "scene", makes = "display", view = true },
   settings = {
     config = fx.file { extensions = { "ocio" }, doc = "The configuration: beside the preset or on the search path. None: the one that $OCIO names." },
     display = fx.text { doc = "Display. None: the configuration's default." },
