@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/frame_export.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "image/sequence.h"
@@ -11,6 +13,24 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostAtOnce = 4;  // whole pictures in memory
+
+/// Is the file one of those that are played?
+bool is_played(const Footage& footage, const fs::path& file) {
+  std::error_code none;
+  for (int picture = 0; picture < footage.pictures(); ++picture)
+    for (const fs::path& source : footage.files(picture))
+      if (fs::equivalent(source, file, none)) return true;
+  return false;
+}
+
+/// The frame that is shown, among all there are.
+std::string key_of(Player& player) {
+  const ShownFrame& shown = player.shown();
+  const Footage& footage = player.footage();
+  const bool known = shown.position >= 0 && shown.position < footage.frames();
+  return fmt::format("{} {} {}", known ? footage.file(footage.frame(shown.position).picture).string() : "", shown.name,
+                     shown.number);
+}
 
 }  // namespace
 
@@ -26,11 +46,29 @@ Result<fs::path> FrameExport::file_for(const std::string& picture, int number) c
   return pattern.file(number);
 }
 
+/// The file that the shown frame goes to. Errors: it is one that is played; names that are no pattern.
+Result<fs::path> FrameExport::free_file(Player& player) {
+  AFTERGLOW_TRY(const fs::path wanted, file_for(player.shown().name, player.shown().number));
+  const std::string frame = key_of(player);
+  fs::path file = wanted;
+  std::error_code none;
+  for (int n = 2; fs::exists(file, none) || mine_.contains(file); ++n) {
+    if (fs::exists(file, none) && is_played(player.footage(), file))
+      return Error{ErrorKind::usage, "it is played and would be overwritten by its own result; nothing was written",
+                   file.string()};
+    const auto own = mine_.find(file);
+    if (own != mine_.end() && own->second == frame) return file;
+    file = wanted.parent_path() / fmt::format("{}_{}{}", wanted.stem().string(), n, wanted.extension().string());
+  }
+  mine_[file] = frame;
+  return file;
+}
+
 void FrameExport::begin(Player& player, Ui& ui) {
   const ShownFrame& shown = player.shown();
   if (running_.size() >= kMostAtOnce) return ui.say("frames are being written; a moment");
   if (shown.unreadable || shown.failed) return ui.say("this frame is not there: nothing was written");
-  const auto file = file_for(shown.name, shown.number);
+  const auto file = free_file(player);
   auto picture = player.screenshot();
   const Error* error = !file ? &file.error() : !picture ? &picture.error() : nullptr;
   if (error) return ui.say(error->text());

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <future>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ class FrameExport {
   /// Waits for what is being written.
   ~FrameExport() = default;
 
-  /// Takes the frame from the device and begins to write it.
+  /// Takes the frame from the device and begins to write it. Files that are there stay: the frame gets a name that is
+  /// free, but for its own file of before, which it replaces. What is played is never written over.
   void begin(Player& player, Ui& ui);
   /// In each turn: tells what was written or why not.
   void poll(Ui& ui);
@@ -32,8 +34,11 @@ class FrameExport {
     std::filesystem::path file;
     Result<void> done;
   };
+  Result<std::filesystem::path> free_file(Player& player);
+
   std::filesystem::path to_;
   Diagnostics& diagnostics_;
+  std::map<std::filesystem::path, std::string> mine_;  ///< which frame went to a file
   std::vector<std::future<Written>> running_;
 };
 
