@@ -41,7 +41,7 @@ struct WrittenSetting {
 
 struct RefusedSetting {
   PresetEdit edit;
-  Error reason;  ///< file and line of what stands in the way, with its expression
+  Error reason;  ///< file and line of what stands in the way, with its expression; usage: a name or value is wrong
 };
 
 /// What edits make of a preset's text. `text` equals `before` when nothing is to be changed.
@@ -54,8 +54,8 @@ struct Rewrite {
 
 /// Pure text and scripts: no file is written. `options`: as the preset is loaded; its overrides and text are ignored.
 /// `before` is the text of `file`, which other scripts and effects are found beside. Errors (script): the preset does
-/// not load; the new text would not give the wanted settings, or would change others. Errors (usage): unknown entries,
-/// settings and volumes, values of another type.
+/// not load; the new text would not give the wanted settings, or would change others. Unknown entries, settings and
+/// volumes, and values that are not allowed, are refused, each by itself.
 Result<Rewrite> rewrite_preset(const std::filesystem::path& file, const std::string& before,
                                const std::vector<PresetEdit>& edits, const PresetOptions& options);
 

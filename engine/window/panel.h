@@ -63,6 +63,7 @@ class Panel {
   void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
   void draw_entry(Ui& ui, PanelPort& port, std::size_t index);
+  static void draw_lost(const Ui& ui, PanelPort& port, const Build& build);
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
   void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, bool changed);
   void draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry);

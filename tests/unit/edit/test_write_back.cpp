@@ -339,7 +339,8 @@ TEST_F(WriteBack, NothingElseMayChange) {
 TEST_F(WriteBack, Messages) {
   const auto error = [&](const PresetEdit& edit) {
     const auto out = rewrite(head + "fx.glow {}" + tail, {edit});
-    return out ? "" : out.error().text();
+    EXPECT_EQ(out->text, out->before);
+    return out->refused.empty() ? "" : out->refused[0].reason.text();
   };
   EXPECT_THAT(error({"glo", "knee", number(1)}),
               HasSubstr("the stack has no entry 'glo'; allowed: glow; did you mean 'glow'?"));

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// What the panel writes, what it leaves out, and what is still unsaved then.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/file.h"
+#include "panel_test.h"
+
+namespace afterglow::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class PanelSaveTest : public PanelTest {
+ protected:
+  static SettingValue number(double value) { return {SettingType::number, {value}, ""}; }
+  /// The file with `after` in place of `before`, and the preset that is shown.
+  void change_file(const std::string& before, const std::string& after) {
+    std::string text = read_file(file).value();
+    ASSERT_NE(text.find(before), std::string::npos) << text;
+    text.replace(text.find(before), before.size(), after);
+    std::ofstream(file) << text;
+    port->reload();
+  }
+  void save() {
+    panel->save(*port);
+    panel->saving().wait();
+    frame();
+  }
+};
+
+TEST_F(PanelSaveTest, AChangeOfWhatHasGoneHoldsNothingBack) {
+  port->changes.set("bloom", "intensity", number(0.5));
+  port->changes.set("tone_mapping", "mode", {SettingType::enumeration, {}, "neutral"});
+  port->changes.set("bloom", "gone", number(1));
+  ASSERT_NO_FATAL_FAILURE(change_file("  fx.tone_mapping { mode = \"aces\" },\n", ""));
+  EXPECT_THAT(words(), HasSubstr("Changes of what the preset no longer has"));
+  save();
+  EXPECT_THAT(read_file(file).value(), HasSubstr("fx.bloom { intensity = 0.5 }"));
+  EXPECT_EQ(panel->saving().message(), "1 setting written to look.lua; 2 left out");
+  EXPECT_THAT(words(), HasSubstr("the stack has no entry 'tone_mapping'"));
+  ASSERT_TRUE(find({"Settings", "lost", "tone_mapping.mode", "x"}));
+  click();
+  ASSERT_TRUE(find({"Settings", "lost", "bloom.gone", "x"}));
+  click();
+  EXPECT_FALSE(port->changes.value("tone_mapping", "mode"));
+  EXPECT_FALSE(port->changes.value("bloom", "gone"));
+  EXPECT_THAT(words(), Not(HasSubstr("no longer has")));
+}
+
+}  // namespace
+}  // namespace afterglow::test
