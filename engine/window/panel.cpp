@@ -27,9 +27,9 @@ std::filesystem::path copy_of(const std::filesystem::path& preset, const std::st
 }  // namespace
 
 std::string Panel::unsaved(PanelPort& port) const {
-  if (save_.settling()) return {};
   const auto& edits = port.edits().edits();
-  const auto count = std::ranges::count_if(edits, [](const SettingEdit& edit) { return !edit.entry.empty(); });
+  const auto count = std::ranges::count_if(
+      edits, [&](const SettingEdit& edit) { return !edit.entry.empty() && !save_.settles(edit); });
   const bool stack = port.edits().stack_text() != nullptr;
   if (count == 0 && !stack) return {};
   const std::string settings = count == 1 ? "1 setting" : fmt::format("{} settings", count);

@@ -47,6 +47,7 @@ class Port : public PanelPort {
     auto build = preset_->evaluate({.size = {64, 32}}, diagnostics_);
     ASSERT_TRUE(build) << build.error().text();
     build_ = std::move(*build);
+    ++now.generation;
   }
 
   const Preset* preset() override { return preset_.get(); }

@@ -49,5 +49,37 @@ TEST_F(PanelSaveTest, AChangeOfWhatHasGoneHoldsNothingBack) {
   EXPECT_THAT(words(), Not(HasSubstr("no longer has")));
 }
 
+/// Until the new file is on screen, what was left out is unsaved, and nothing else is.
+TEST_F(PanelSaveTest, WhatWasLeftOutIsUnsavedAtOnce) {
+  port->changes.set("bloom", "intensity", number(0.5));
+  save();
+  EXPECT_TRUE(port->changes.value("bloom", "intensity"));
+  EXPECT_EQ(panel->unsaved(*port), "");
+  port->changes.set("bloom", "scatter", number(0.5));
+  EXPECT_EQ(panel->unsaved(*port), "1 setting of look.lua");
+  port->changes.set("color_adjustments", "contrast", number(20));  // computed
+  save();
+  EXPECT_EQ(panel->saving().message(), "1 setting written to look.lua; 1 left out");
+  EXPECT_EQ(panel->unsaved(*port), "1 setting of look.lua");
+  port->reload();
+  frame();
+  EXPECT_EQ(port->changes.edits().size(), 1u);
+  EXPECT_TRUE(port->changes.value("color_adjustments", "contrast"));
+}
+
+TEST_F(PanelSaveTest, AnotherProgramWritesTheFileBeforeItIsShown) {
+  port->changes.set("bloom", "intensity", number(0.5));
+  port->changes.set("bloom", "scatter", number(0.5));
+  save();
+  ASSERT_NO_FATAL_FAILURE(change_file("intensity = 0.5", "intensity = 0.9"));
+  frame();
+  EXPECT_FALSE(port->changes.value("bloom", "scatter")) << "the file says it";
+  EXPECT_EQ(edited("bloom", "intensity").number[0], 0.5);
+  EXPECT_THAT(words(), HasSubstr("The file says 0.9 now (it was 0.5)"));
+  EXPECT_EQ(panel->unsaved(*port), "1 setting of look.lua");
+  port->changes.set("tone_mapping", "opacity", number(0.5));
+  EXPECT_EQ(panel->unsaved(*port), "2 settings of look.lua");
+}
+
 }  // namespace
 }  // namespace afterglow::test
