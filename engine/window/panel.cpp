@@ -17,10 +17,10 @@ void Panel::save(PanelPort& port) {
 
 namespace {
 
-/// Names without an extension are presets; relative ones lie beside the one that is copied.
+/// A preset's name ends in ".lua", whatever dots it has; relative ones lie beside the one that is copied.
 std::filesystem::path copy_of(const std::filesystem::path& preset, const std::string& name) {
   std::filesystem::path file = preset.parent_path() / name;
-  if (file.extension().empty()) file += ".lua";
+  if (file.extension() != ".lua") file += ".lua";
   return file;
 }
 

@@ -81,5 +81,25 @@ TEST_F(PanelSaveTest, AnotherProgramWritesTheFileBeforeItIsShown) {
   EXPECT_EQ(panel->unsaved(*port), "2 settings of look.lua");
 }
 
+TEST_F(PanelSaveTest, ACopyIsAPresetWhateverItsName) {
+  std::string opened;
+  interface.ui().open = [&](const std::string& path) { opened = path; };
+  std::ofstream(folder_ / "hero.v2.lua") << "there";
+  panel->save_as();
+  frame();
+  frame();
+  ImGui::GetIO().AddInputCharactersUTF8("hero.v2");
+  frame();
+  ASSERT_TRUE(find_in_dialog());
+  click();
+  EXPECT_THAT(read_file(folder_ / "hero.v2.lua").value(), "there") << "asked about first";
+  ASSERT_TRUE(find_in_dialog());
+  click();
+  panel->saving().wait();
+  frame();
+  EXPECT_EQ(opened, (folder_ / "hero.v2.lua").string()) << panel->saving().message();
+  EXPECT_EQ(read_file(folder_ / "hero.v2.lua").value(), kPreset);
+}
+
 }  // namespace
 }  // namespace afterglow::test
