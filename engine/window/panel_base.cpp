@@ -10,7 +10,9 @@ namespace afterglow {
 std::optional<SettingValue> base_value(const Build& build, const std::string& entry, const std::string& setting) {
   for (const auto& history : build.explanation->entries) {
     const SettingHistory* found = history.name == entry ? history.find(setting) : nullptr;
-    if (found) return found->preset ? *found->preset : found->default_value;
+    if (!found) continue;
+    if (!found->preset) return found->default_value;
+    return found->kind == "fixed" ? found->preset : std::nullopt;
   }
   return std::nullopt;
 }

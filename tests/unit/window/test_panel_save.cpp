@@ -81,6 +81,16 @@ TEST_F(PanelSaveTest, AnotherProgramWritesTheFileBeforeItIsShown) {
   EXPECT_EQ(panel->unsaved(*port), "2 settings of look.lua");
 }
 
+/// What a curve says at another frame is no change of the file.
+TEST_F(PanelSaveTest, CurvesMoveWithoutAConflict) {
+  port->changes.set("color_adjustments", "post_exposure", number(0.5));
+  frame();
+  ASSERT_NO_FATAL_FAILURE(change_file("{ 1, 0 }, { 9, 1 }", "{ 1, 0.25 }, { 9, 1 }"));  // as a later frame would
+  EXPECT_THAT(words(), Not(HasSubstr("The file says")));
+  save();
+  EXPECT_THAT(words(), HasSubstr("color_adjustments.post_exposure is computed and stays as it is: fx.curve"));
+}
+
 TEST_F(PanelSaveTest, ACopyIsAPresetWhateverItsName) {
   std::string opened;
   interface.ui().open = [&](const std::string& path) { opened = path; };
