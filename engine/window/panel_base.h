@@ -11,8 +11,7 @@
 
 namespace afterglow {
 
-/// The value of the preset itself, without the panel's. None: nobody knows (enabled, arguments, unknown settings), or
-/// it is another one with each frame (curves, functions).
+/// The value of the preset itself, without the panel's. None: nobody knows (enabled, arguments, unknown settings).
 std::optional<SettingValue> base_value(const Build& build, const std::string& entry, const std::string& setting);
 /// As far as settings are told apart: numbers as floats.
 bool same_value(const SettingValue& a, const SettingValue& b);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "image/srgb.h"
 
@@ -11,6 +12,7 @@ namespace afterglow {
 namespace {
 
 constexpr int kMaxInteger = 2147483647;
+constexpr std::size_t kMostText = 1000;  // bytes, as scripts take them
 
 // Digits that tell neighbouring values of the range apart.
 const char* number_format(const SettingSchema& schema) {
@@ -143,14 +145,14 @@ std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const Setti
       changed = choice_row(name, schema, out.choice);
       break;
     case SettingType::file:
-    case SettingType::text: {
-      std::array<char, 512> text{};
-      out.choice.copy(text.data(), text.size() - 1);
-      changed = ImGui::InputText(name, text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-      out.choice = text.data();
-      out.number[0] = 0;
+    case SettingType::text:
+      if (auto text =
+              ui.texts.draw(name, out.choice, schema.type == SettingType::text ? kMostText : TypedText::kMost)) {
+        out.choice = std::move(*text);
+        out.number[0] = 0;
+        changed = true;
+      }
       break;
-    }
     case SettingType::color:
       changed = color_row(ui, name, out.number, width);
       for (double& c : out.number) c = std::isfinite(c) ? std::max(c, 0.0) : 0;

@@ -146,6 +146,19 @@ class PanelTest : public ::testing::Test {
     return text ? text : "";
   }
 
+  void press_key(int code) {
+#if IMGUI_VERSION_NUM >= 18700
+    ImGui::GetIO().AddKeyEvent(static_cast<ImGuiKey>(code), true);
+    frame();
+    ImGui::GetIO().AddKeyEvent(static_cast<ImGuiKey>(code), false);
+#else
+    ImGui::GetIO().KeyMap[code] = code;
+    ImGui::GetIO().KeysDown[code] = true;
+    frame();
+    ImGui::GetIO().KeysDown[code] = false;
+#endif
+    frame();
+  }
   void move(float x, float y) { ImGui::GetIO().MousePos = {x, y}; }
   /// The panel makes bloom's intensity 0.5, and then the file 0.9; returns what the file holds.
   std::string change_both() {
