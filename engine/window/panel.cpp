@@ -17,6 +17,18 @@ void Panel::save(PanelPort& port) {
 
 namespace {
 
+std::string name_of(const SettingEdit& edit) {
+  return edit.entry.empty() ? edit.setting : edit.entry + "." + edit.setting;
+}
+
+/// Is the error about what was changed? It says the setting, the value, or the file that the value names.
+bool names(const Error& error, const SettingEdit& edit) {
+  const auto says = [&](const std::string& text) { return error.message.find(text) != std::string::npos; };
+  const bool its_file =
+      edit.value.type == SettingType::file && !edit.value.choice.empty() && error.file.ends_with(edit.value.choice);
+  return says(name_of(edit)) || says(fmt::format("{} = {}", edit.setting, edit.value.text())) || its_file;
+}
+
 /// A preset's name ends in ".lua", whatever dots it has; relative ones lie beside the one that is copied.
 std::filesystem::path copy_of(const std::filesystem::path& preset, const std::string& name) {
   std::filesystem::path file = preset.parent_path() / name;
@@ -115,12 +127,19 @@ bool Panel::close_windows() {
 }
 
 /// While the file has an error the picture is that of the last good one: settings of a file that cannot be run are
-/// shown, and rest.
+/// shown, and rest. What was changed here may be what is wrong, and is mended here.
 void Panel::draw_settings(Ui& ui, PanelPort& port) {
-  const bool broken = port.status().error.has_value();
-  if (broken && port.build()) {
+  const auto error = port.status().error;
+  const auto& edits = port.edits().edits();
+  const bool broken = error && edits.empty();
+  if (error && port.build()) {
+    const auto blamed = std::ranges::find_if(edits, [&](const SettingEdit& edit) { return names(*error, edit); });
+    const std::string text = broken ? "The preset has an error. Settings rest until it is mended."
+                             : blamed == edits.end()
+                                 ? "The preset has an error: in the file, or by a change made here."
+                                 : fmt::format("The error is in your change of {}.", name_of(*blamed));
     ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
-    ImGui::TextWrapped("The preset has an error. Settings rest until it is mended.");
+    ImGui::TextWrapped("%s", text.c_str());
     ImGui::PopStyleColor();
   }
   ui.values_apply = !broken;

@@ -8,6 +8,8 @@
 namespace afterglow::test {
 namespace {
 
+using ::testing::HasSubstr;
+
 class PanelFields : public PanelTest {
  protected:
   PanelFields() {
@@ -51,6 +53,27 @@ TEST_F(PanelFields, TextsMayBeLong) {
   type(std::string(900, 'y'));
   press_key(ImGuiKey_Enter);
   EXPECT_EQ(edited("", "hero").choice.size(), 1000u) << "no longer than scripts take them";
+}
+
+/// A change that the preset cannot be run with is mended where it was made.
+TEST_F(PanelFields, AChangeThatIsWrongIsNamedAndCanBeMended) {
+  std::ofstream(file) << "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut {} }\n";
+  port->reload();
+  const SettingValue wrong{SettingType::file, {}, "no.cube"};
+  port->changes.set("lut", "file", wrong);
+  port->now.error = Error{ErrorKind::script, "file = \"no.cube\": there is no such file", file.string(), 2};
+  EXPECT_THAT(words(), HasSubstr("The error is in your change of lut.file."));
+  ASSERT_TRUE(find({"Settings", "lut", "file", "##value"}));
+  click();
+  ImGui::GetIO().AddInputCharactersUTF8("x");
+  frame();
+  press_key(ImGuiKey_Enter);
+  EXPECT_EQ(edited("lut", "file").choice, "xno.cube");
+  port->changes.set("lut", "file", wrong);
+  port->now.error = Error{ErrorKind::script, "unknown word 'x'", (folder_ / "no.cube").string(), 1};
+  EXPECT_THAT(words(), HasSubstr("The error is in your change of lut.file."));
+  port->now.error = Error{ErrorKind::script, "broken", file.string(), 2};
+  EXPECT_THAT(words(), HasSubstr("The preset has an error: in the file, or by a change made here."));
 }
 
 }  // namespace
