@@ -75,7 +75,7 @@ class PresetWriter {
   /// Reads the file; writes nothing. Errors: as rewrite_preset; io (also: the file is no longer `working`'s base).
   Result<Rewrite> plan(const std::vector<PresetEdit>& edits, const std::optional<WorkingText>& working = {}) const;
   /// Replaces the file, whole or not at all; links are followed, mode bits kept. Does nothing when there is no change.
-  /// Errors (io): the file is no longer what the plan was made from; it cannot be written.
+  /// Errors (io): the file is no longer what the plan was made from; it cannot be written. Usage: it lies in a pack.
   Result<void> save(const Rewrite& rewrite);
 
   /// How many saves can be taken back, at most 100.

@@ -6,13 +6,19 @@
 #include <algorithm>
 
 #include "script/build.h"
+#include "window/kept_preset.h"
 #include "window/panel_row.h"
 #include "window/view_controls.h"
 
 namespace afterglow {
-void Panel::save(PanelPort& port) {
+bool Panel::save(PanelPort& port) {
+  if ((stack_.busy() || !unsaved(port).empty()) && !keeper_of(save_.file()).empty()) {
+    save_as();
+    return true;
+  }
   save_waits_ = stack_.busy();
   if (!save_waits_) save_.save(port, bases_);
+  return false;
 }
 
 namespace {
@@ -29,9 +35,9 @@ bool names(const Error& error, const SettingEdit& edit) {
   return says(name_of(edit)) || says(fmt::format("{} = {}", edit.setting, edit.value.text())) || its_file;
 }
 
-/// A preset's name ends in ".lua", whatever dots it has; relative ones lie beside the one that is copied.
+/// A preset's name ends in ".lua", whatever dots it has.
 std::filesystem::path copy_of(const std::filesystem::path& preset, const std::string& name) {
-  std::filesystem::path file = preset.parent_path() / name;
+  std::filesystem::path file = folder_for_copies(preset) / name;
   if (file.extension() != ".lua") file += ".lua";
   return file;
 }
@@ -96,10 +102,17 @@ void Panel::draw_windows(Ui& ui, PanelPort& port) {
 }
 
 void Panel::save_as() {
-  const std::filesystem::path folder = save_.file().parent_path();
+  const std::filesystem::path folder = folder_for_copies(save_.file());
+  const std::string keeper = keeper_of(save_.file());
+  const std::filesystem::path same = folder / save_.file().filename();
+  std::error_code ec;
+  const std::filesystem::path name = !std::filesystem::exists(same, ec) ? same : free_name(same);
+  const std::string place = "In " + (folder.empty() ? "the current folder" : folder.string());
   NameDialog::Question question{.title = "Save preset as",
-                                .note = "In " + (folder.empty() ? "the current folder" : folder.string()),
-                                .name = free_name(save_.file()).filename().string(),
+                                .note = keeper.empty() ? place
+                                                       : fmt::format("{} is of {} and stays. {}",
+                                                                     save_.file().filename().string(), keeper, place),
+                                .name = name.filename().string(),
                                 .button = "Save",
                                 .in_the_way = {}};
   question.in_the_way = [preset = save_.file()](const std::string& name) -> std::optional<std::string> {

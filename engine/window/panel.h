@@ -33,7 +33,8 @@ class Panel {
   bool lists_effects() const { return browser_.is_open(); }
 
   // What keys do too.
-  void save(PanelPort& port);
+  /// True: the preset is not to be written over, and a name for a copy is asked for; see keeper_of.
+  bool save(PanelPort& port);
   void undo_save(PanelPort& port) { save_.undo(port, bases_); }
   /// The cursor goes into the search field with the next draw.
   void search() { focus_search_ = true; }
@@ -52,6 +53,7 @@ class Panel {
   std::string unsaved(PanelPort& port) const;
   const PanelSave& saving() const { return save_; }
   bool busy() const { return save_.busy() || save_waits_; }
+  bool asks_for_name() const { return save_as_.is_open(); }
   const PanelStack& stack() const { return stack_; }
 
  private:

@@ -195,7 +195,7 @@ void PlayParts::add_to(WindowOptions& options) {
   };
   options.transport_shape = [](const Ui& ui, float width) { return transport_bar_shape(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
-  options.save = [this](Player&, Ui&) { panel_->save(port_); };
+  options.save = [this](Player&, Ui&) { return panel_->save(port_); };
   options.unsaved = [this](Player&, bool closing) { return unsaved(closing); };
   options.dialogs = [this](Player&, Ui& ui) { draw_dialogs(ui); };
   options.strip = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { range_export_.draw(ui, place, size); };
@@ -204,7 +204,9 @@ void PlayParts::add_to(WindowOptions& options) {
   options.saving = [this] {
     const PanelSave& save = panel_->saving();
     if (panel_->busy()) return WindowOptions::Saving::busy;
-    return save.failed() || !save.refused().empty() ? WindowOptions::Saving::failed : WindowOptions::Saving::done;
+    const bool asks = panel_->asks_for_name();
+    return asks || save.failed() || !save.refused().empty() ? WindowOptions::Saving::failed
+                                                            : WindowOptions::Saving::done;
   };
   options.undo_save = [this](Player&, Ui& ui) {
     if (!panel_->saving().can_undo()) return ui.say("nothing was saved");

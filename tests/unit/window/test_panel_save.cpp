@@ -111,5 +111,58 @@ TEST_F(PanelSaveTest, ACopyIsAPresetWhateverItsName) {
   EXPECT_EQ(read_file(folder_ / "hero.v2.lua").value(), kPreset);
 }
 
+/// For the rest of a test.
+class Environment {
+ public:
+  Environment(const char* name, const fs::path& value)
+      : name_(name), before_(std::getenv(name) ? std::getenv(name) : "") {
+    setenv(name, value.c_str(), 1);
+  }
+  ~Environment() { before_.empty() ? unsetenv(name_) : setenv(name_, before_.c_str(), 1); }
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+TEST_F(PanelSaveTest, PresetsOfPacksAreCopied) {
+  const Environment cache("AFTERGLOW_CACHE", folder_);
+  const fs::path packed = folder_ / "packs" / "0123" / "kit.zip" / "look.lua", here = fs::current_path();
+  fs::create_directories(packed.parent_path());
+  fs::copy_file(file, packed);
+  fs::current_path(folder_);
+  std::string opened;
+  interface.ui().open = [&](const std::string& path) { opened = path; };
+  panel = std::make_unique<Panel>(packed, PresetOptions{});
+  EXPECT_FALSE(panel->save(*port)) << "nothing was changed";
+  port->changes.set("bloom", "intensity", number(0.5));
+  EXPECT_TRUE(panel->save(*port));
+  frame();
+  frame();
+  ASSERT_TRUE(find_in_dialog());
+  click();
+  panel->saving().wait();
+  frame();
+  fs::current_path(here);
+  EXPECT_EQ(read_file(packed).value(), kPreset);
+  EXPECT_EQ(fs::path(opened).filename(), "look_2.lua") << panel->saving().message();
+  EXPECT_THAT(read_file(folder_ / "look_2.lua").value(), HasSubstr("fx.bloom { intensity = 0.5 }"));
+}
+
+TEST_F(PanelSaveTest, PresetsOfTheInstallationAreCopied) {
+  const Environment home("AFTERGLOW_HOME", folder_);
+  const fs::path installed = folder_ / "presets" / "look.lua";
+  fs::create_directories(installed.parent_path());
+  fs::copy_file(file, installed);
+  port->changes.set("bloom", "intensity", number(0.5));
+  panel = std::make_unique<Panel>(installed, PresetOptions{});
+  EXPECT_TRUE(panel->save(*port));
+  EXPECT_TRUE(panel->asks_for_name());
+  panel = std::make_unique<Panel>(file, PresetOptions{});
+  EXPECT_FALSE(panel->save(*port)) << "it lies in the installation's folder, and is none of its presets";
+  panel->saving().wait();
+  EXPECT_EQ(read_file(installed).value(), kPreset);
+}
+
 }  // namespace
 }  // namespace afterglow::test
