@@ -86,7 +86,7 @@ void PlayParts::browse_presets() {
 /// The look as it is on screen when the list is opened, with one effect more.
 EffectBrowser::Source PlayParts::effect_pictures() {
   ChangedLook look{.text = {},
-                   .overrides = player_.edits().overrides(preset_options_.overrides),
+                   .overrides = player_.live().overrides(),
                    .arguments = player_.edits().arguments(preset_options_.arguments)};
   if (const StackText& text = player_.edits().stack_text()) look.text = *text;
   const auto changed = std::make_shared<const ChangedLook>(std::move(look));

@@ -128,7 +128,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   } else if (look_) {
     preset.text = *look_;
   }
-  preset.overrides = player.edits().overrides(preset.overrides);
+  preset.overrides = player.live().overrides();
   preset.arguments = player.edits().arguments(preset.arguments);
   preset.leave_out_unfit = true;
   const bool one = clip && clips.size() > 1;
