@@ -97,12 +97,15 @@ class Rewriter {
     const auto places = places_of(lua_, preset_, file_, task.edit);
     if (!places) return places.error();
     std::optional<Error> reason;
+    bool expression = false;
     for (const Place& place : *places) {
       task.place = place;
       auto failure = try_place(task, places->size() == 1);
       if (!failure) return {};
       // An expression says most; else the first place, which fits best.
-      if (!reason) reason = std::move(failure);
+      const bool is_expression = !change_of(lua_, task);
+      if (!reason || (is_expression && !expression)) reason = std::move(failure);
+      expression = expression || is_expression;
     }
     return reason;
   }

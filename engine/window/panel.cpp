@@ -219,7 +219,10 @@ void Panel::draw_outcome(Ui& ui) {
   if (!saved && !stack_.failed()) return;
   std::vector<std::pair<ImU32, std::string>> lines;
   if (stack_.failed()) lines.emplace_back(ui_color::kError, stack_.message());
-  if (saved) lines.emplace_back(save_.failed() ? ui_color::kError : ui_color::kGood, save_.message());
+  if (saved) {
+    const ImU32 good = save_.refused().empty() ? ui_color::kGood : ui_color::kWarning;
+    lines.emplace_back(save_.failed() ? ui_color::kError : good, save_.message());
+  }
   for (const auto& refused : save_.refused()) lines.emplace_back(ui_color::kWarning, refused.reason.text());
   for (const auto& note : save_.notes()) lines.emplace_back(ui_color::kDim, note);
 

@@ -157,6 +157,7 @@ PanelSave::Outcome PanelSave::write_copy(const std::vector<PresetEdit>& edits,
 
 bool PanelSave::poll(PanelPort& port, EditBases& bases) {
   settle(port, bases);
+  forget_refused(port.edits());
   if (!busy() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Outcome outcome = running_.get();
   if (outcome.error) {
@@ -206,10 +207,20 @@ void PanelSave::take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite) {
   const std::size_t count = rewrite.written.size();
   const std::string settings = count == 1 ? "1 setting" : fmt::format("{} settings", count);
   const std::string what = !stack ? settings : count == 0 ? "the stack" : "the stack and " + settings;
-  std::string text = count == 0 && !stack ? "The preset says so already"
-                                          : fmt::format("{} written to {}", what, writer_.file().filename().string());
+  const bool nothing = count == 0 && !stack;
+  std::string text = nothing && saving_.empty() ? "Nothing was written"
+                     : nothing                  ? "The preset says so already"
+                               : fmt::format("{} written to {}", what, writer_.file().filename().string());
   if (!refused_.empty()) text = fmt::format("{}; {} left out", text, refused_.size());
   tell(std::move(text), false);
+}
+
+/// What was left out and has been taken back since is no news any more.
+void PanelSave::forget_refused(const SettingEdits& edits) {
+  if (busy() || refused_.empty()) return;
+  std::erase_if(refused_,
+                [&](const RefusedSetting& refused) { return !edits.value(refused.edit.entry, refused.edit.setting); });
+  if (refused_.empty()) dismiss();
 }
 
 bool PanelSave::settles(const SettingEdit& edit) const {

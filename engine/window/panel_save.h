@@ -69,6 +69,7 @@ class PanelSave {
   void take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite);
   void tell(std::string message, bool failed);
   void settle(PanelPort& port, EditBases& bases);
+  void forget_refused(const SettingEdits& edits);
 
   PresetWriter writer_;
   PresetOptions options_;

@@ -81,6 +81,16 @@ TEST_F(PanelSaveTest, AnotherProgramWritesTheFileBeforeItIsShown) {
   EXPECT_EQ(panel->unsaved(*port), "2 settings of look.lua");
 }
 
+TEST_F(PanelSaveTest, WhatIsLeftOutIsToldUntilItIsTakenBack) {
+  port->changes.set("color_adjustments", "contrast", number(20));
+  save();
+  EXPECT_EQ(panel->saving().message(), "Nothing was written; 1 left out");
+  EXPECT_THAT(words(), HasSubstr("is computed and stays as it is"));
+  port->reset_all();
+  EXPECT_THAT(words(), Not(HasSubstr("is computed and stays as it is")));
+  EXPECT_EQ(panel->saving().message(), "");
+}
+
 /// What a curve says at another frame is no change of the file.
 TEST_F(PanelSaveTest, CurvesMoveWithoutAConflict) {
   port->changes.set("color_adjustments", "post_exposure", number(0.5));
