@@ -59,6 +59,8 @@ void Panel::turn(Ui& ui, PanelPort& port) {
   if (save_.poll(port, bases_)) ui.say(save_.message());
   if (const auto copy = save_.take_copy()) ui.open(copy->string());
   if (stack_.poll(port, !save_.busy())) ui.say(stack_.message());
+  const bool told = std::exchange(conflict_told_, stack_.conflict());
+  if (stack_.conflict() && !told) ui.say(conflict_text());
   // What was asked for before is part of what is saved.
   if (save_waits_ && !stack_.busy()) {
     save_waits_ = false;
@@ -86,7 +88,7 @@ void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
     draw_head(ui, port);
     if (ImGui::CollapsingHeader("View")) draw_view_controls(ui, port);
     draw_settings(ui, port);
-    draw_outcome(ui);
+    draw_outcome(ui, port);
   }
   ImGui::End();
   draw_windows(ui, port);
@@ -200,24 +202,37 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
                            ImGuiInputTextFlags_AutoSelectAll);
 }
 
+std::string Panel::conflict_text() const {
+  return fmt::format(
+      "{0} was changed since its stack was changed here. The stack of here is shown, and edits of {0} have no effect",
+      save_.file().filename().string());
+}
+
 /// The file was changed since the stack was changed here: a way to each.
 void Panel::draw_conflict(const Ui& ui, PanelPort& port) {
   if (!stack_.conflict()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
-  ImGui::TextWrapped("%s was changed since its stack was changed here.", save_.file().filename().string().c_str());
+  ImGui::TextWrapped("%s", conflict_text().c_str());
   ImGui::PopStyleColor();
+  draw_choice(ui, port);
+}
+
+void Panel::draw_choice(const Ui& ui, PanelPort& port) {
   if (small_button(ui, "Keep mine", "The stack as it is here; Save writes it over the file's")) stack_.keep();
   ImGui::SameLine();
   if (small_button(ui, "Take the file's", "The stack that the file has now; Undo brings this one back"))
     stack_.take(port);
 }
 
-// What the last save left out and why, or why it failed, over the end of the panel: nothing moves for it. What went
-// well is said over the picture for a moment.
-void Panel::draw_outcome(Ui& ui) {
+// What the last save left out and why, or why it failed, over the end of the panel: nothing moves for it. So is a stack
+// that the file disagrees with: the panel's top may be out of sight. What went well is said over the picture for a
+// moment.
+void Panel::draw_outcome(Ui& ui, PanelPort& port) {
   const bool saved = save_.failed() || !save_.refused().empty() || !save_.notes().empty();
-  if (!saved && !stack_.failed()) return;
+  const bool conflict = stack_.conflict();
+  if (!saved && !stack_.failed() && !conflict) return;
   std::vector<std::pair<ImU32, std::string>> lines;
+  if (conflict) lines.emplace_back(ui_color::kWarning, conflict_text());
   if (stack_.failed()) lines.emplace_back(ui_color::kError, stack_.message());
   if (saved) {
     const ImU32 good = save_.refused().empty() ? ui_color::kGood : ui_color::kWarning;
@@ -229,7 +244,7 @@ void Panel::draw_outcome(Ui& ui) {
   const ImGuiStyle& style = ImGui::GetStyle();
   const float width = ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x;
   const float wrap = width - 2 * style.WindowPadding.x;
-  float height = 2 * style.WindowPadding.y + ImGui::GetFrameHeightWithSpacing();
+  float height = 2 * style.WindowPadding.y + (conflict ? 2.0f : 1.0f) * ImGui::GetFrameHeightWithSpacing();
   std::string all;
   for (const auto& [color, text] : lines) {
     height += ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
@@ -245,6 +260,7 @@ void Panel::draw_outcome(Ui& ui) {
       ImGui::TextWrapped("%s", text.c_str());
       ImGui::PopStyleColor();
     }
+    if (conflict) draw_choice(ui, port);
     if (small_button(ui, "Copy", "The messages, to the clipboard")) ui.copy(all);
     ImGui::SameLine();
     if (small_button(ui, "Dismiss", "Hide the messages")) {

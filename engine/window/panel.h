@@ -58,8 +58,10 @@ class Panel {
 
  private:
   void draw_head(Ui& ui, PanelPort& port);
-  void draw_outcome(Ui& ui);
+  void draw_outcome(Ui& ui, PanelPort& port);
   void draw_conflict(const Ui& ui, PanelPort& port);
+  void draw_choice(const Ui& ui, PanelPort& port);
+  std::string conflict_text() const;
   void draw_windows(Ui& ui, PanelPort& port);
   void draw_settings(Ui& ui, PanelPort& port);
   void draw_arguments(Ui& ui, PanelPort& port);
@@ -83,8 +85,9 @@ class Panel {
   std::function<EffectBrowser::Source()> pictures_ = [] { return EffectBrowser::Source(); };
   NameDialog save_as_;
   bool save_waits_ = false;  ///< for changes of the stack
-  StackText text_;           ///< that the bases are of
-  std::string chosen_;       ///< the entry that keys are about
+  bool conflict_told_ = false;
+  StackText text_;      ///< that the bases are of
+  std::string chosen_;  ///< the entry that keys are about
   bool scroll_to_chosen_ = false;
   struct {
     std::string effect;

@@ -198,6 +198,19 @@ class PanelTest : public ::testing::Test {
       }
     return false;
   }
+  /// The button in the box at the panel's end.
+  bool find_in_outcome(const std::string& label) {
+    for (float y = kHeight - 8; y > kHeight - 200; y -= 6)
+      for (float x = 16; x < kWidth; x += 8) {
+        move(x, y);
+        frame();
+        const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+        if (window && std::string(window->Name).starts_with("Settings/outcome") &&
+            ImGui::GetCurrentContext()->HoveredId == ImHashStr(label.c_str(), 0, window->ID))
+          return true;
+      }
+    return false;
+  }
   /// The button of the Save as dialog, which stands in the middle.
   bool find_in_dialog() {
     const ImGuiID id = id_of({"Save preset as###name", "###do"});
