@@ -225,6 +225,12 @@ bool Interface::holds_something() const {
   return context.ActiveId != 0 || !context.OpenPopupStack.empty();
 }
 
+bool Interface::close_popups() {
+  if (ImGui::GetCurrentContext()->OpenPopupStack.empty()) return false;
+  ImGui::ClosePopupToLevel(0, true);
+  return true;
+}
+
 bool Interface::wants_keyboard() const {
   // Both stay for a frame behind a field that was left.
   const ImGuiContext& context = *ImGui::GetCurrentContext();

@@ -331,6 +331,7 @@ bool WindowApp::act_on_window(Action action) {
       ui.show_help = !ui.show_help;
       return true;
     case Action::escape:
+      if (interface_->close_popups()) return true;
       if (ui.show_help) {
         ui.show_help = false;
       } else if (!options_.close_windows || !options_.close_windows()) {

@@ -55,6 +55,20 @@ TEST_F(PanelFields, TextsMayBeLong) {
   EXPECT_EQ(edited("", "hero").choice.size(), 1000u) << "no longer than scripts take them";
 }
 
+/// With the keyboard at the picture ImGui itself closes none.
+TEST_F(PanelFields, EscapeClosesWhatTheMouseHasOpened) {
+  EXPECT_FALSE(interface.close_popups());
+  ASSERT_TRUE(find({"Settings", "tone_mapping", "opacity", "##value"}));
+  click(1);
+  frame();
+  const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
+  ASSERT_FALSE(open.empty());
+  EXPECT_TRUE(interface.close_popups());
+  frame();
+  EXPECT_TRUE(open.empty());
+  EXPECT_FALSE(interface.close_popups());
+}
+
 /// A change that the preset cannot be run with is mended where it was made.
 TEST_F(PanelFields, AChangeThatIsWrongIsNamedAndCanBeMended) {
   std::ofstream(file) << "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut {} }\n";
