@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "batch/batch_run.h"
 #include "image/sequence.h"
 #include "image/writer.h"
 
@@ -36,11 +37,12 @@ std::string key_of(Player& player) {
 
 Result<fs::path> FrameExport::file_for(const std::string& picture, int number) const {
   std::error_code none;
-  if (to_.empty() || fs::is_directory(to_, none)) {
+  const bool video = !to_.empty() && is_one_output(to_.string());  // the frame goes beside it
+  if (to_.empty() || video || fs::is_directory(to_, none) || !new_folder(to_.string()).empty()) {
     // "clip.mp4, frame 7" is a name for people.
     const std::string stem = fs::path(picture.substr(0, picture.find(','))).stem().string();
     const std::string frame = picture.find(',') == std::string::npos ? "" : "." + std::to_string(number);
-    return to_ / (stem + frame + "_graded.exr");
+    return (video ? to_.parent_path() : to_) / (stem + frame + "_graded.exr");
   }
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(to_.string()));
   return pattern.file(number);
@@ -69,8 +71,9 @@ void FrameExport::begin(Player& player, Ui& ui) {
   if (running_.size() >= kMostAtOnce) return ui.say("frames are being written; a moment");
   if (shown.unreadable || shown.failed) return ui.say("this frame is not there: nothing was written");
   const auto file = free_file(player);
+  const auto folder = make_folder(new_folder(to_.string()));
   auto picture = player.screenshot();
-  const Error* error = !file ? &file.error() : !picture ? &picture.error() : nullptr;
+  const Error* error = !file ? &file.error() : !folder ? &folder.error() : !picture ? &picture.error() : nullptr;
   if (error) return ui.say(error->text());
   running_.push_back(std::async(std::launch::async, [this, to = *file, frame = std::move(*picture)] {
     return Written{to, write_picture(frame, to, {}, diagnostics_)};

@@ -16,7 +16,8 @@ namespace afterglow {
 /// Drawing thread alone; files are written on threads of their own.
 class FrameExport {
  public:
-  /// `to`: a file (out.####.png takes the frame's number) or a folder (NAME_graded.exr in it).
+  /// `to`: a file (out.####.png takes the frame's number), a folder (NAME_graded.exr in it; one that ends in '/' is
+  /// made) or a video (NAME_graded.exr beside it).
   FrameExport(std::filesystem::path to, Diagnostics& diagnostics) : to_(std::move(to)), diagnostics_(diagnostics) {}
   /// Waits for what is being written.
   ~FrameExport() = default;

@@ -91,5 +91,13 @@ TEST_F(FrameExports, FilesThatAreThereStay) {
   EXPECT_EQ(write(later), "written: out_4.exr") << "what another session wrote is nobody's here";
 }
 
+TEST_F(FrameExports, BesideAVideoAndInANewFolder) {
+  FrameExport video(folder_ / "out.mp4", diagnostics_);
+  EXPECT_EQ(write(video), "written: a.1_graded.exr");
+  FrameExport folder(folder_ / "graded/", diagnostics_);
+  EXPECT_EQ(write(folder), "written: graded/a.1_graded.exr");
+  EXPECT_TRUE(fs::exists(folder_ / "graded" / "a.1_graded.exr"));
+}
+
 }  // namespace
 }  // namespace afterglow::test
