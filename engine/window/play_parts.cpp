@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "window/play_parts.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "window/desktop_window.h"
@@ -132,7 +135,12 @@ void PlayParts::draw_dialogs(Ui& ui) {
 }
 
 std::string PlayParts::unsaved(bool closing) {
-  const std::string changes = panel_->unsaved(port_);
+  std::string changes = panel_->unsaved(port_);
+  const auto arguments =
+      std::ranges::count_if(player_.edits().edits(), [](const auto& edit) { return edit.entry.empty(); });
+  if (arguments > 0)
+    changes += fmt::format("{}{} {}, which no preset holds: they are given by {}", changes.empty() ? "" : " and ",
+                           arguments, arguments == 1 ? "argument" : "arguments", argument_words(player_.edits()));
   if (!closing || !range_export_.busy()) return changes;
   const std::string rest = "the rest of an export (" + range_export_.state() + ")";
   return changes.empty() ? rest : changes + " and " + rest;
