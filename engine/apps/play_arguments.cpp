@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/window_place.h"
+#include "batch/batch_run.h"
 #include "core/file.h"
 #include "core/paths.h"
 #include "core/text.h"
@@ -105,7 +106,9 @@ Result<void> PlayArguments::check() const {
     return Error{ErrorKind::usage, "--view-ocio and --view-icc are of the window: what is written stays without them",
                  "afterglow play"};
   std::error_code none;
-  if (!exports.empty() && !std::filesystem::is_directory(exports, none)) AFTERGLOW_CHECK(check_output(exports, {}));
+  const bool checked_later =
+      std::filesystem::is_directory(exports, none) || is_one_output(exports) || !new_folder(exports).empty();
+  if (!exports.empty() && !checked_later) AFTERGLOW_CHECK(check_output(exports, {}));
   // The format goes by the extension: wrong ones are refused before any work.
   return screenshot.empty() ? Result<void>{} : check_output(screenshot, {});
 }

@@ -167,4 +167,11 @@ Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const Pac
   return folder;
 }
 
+std::string pack_of(const fs::path& file, const fs::path& cache) {
+  std::error_code ec;
+  const fs::path inside = fs::weakly_canonical(file, ec).lexically_relative(fs::weakly_canonical(cache / "packs", ec));
+  const std::vector<fs::path> parts(inside.begin(), inside.end());
+  return parts.size() > 2 && parts[0] != ".." ? parts[1].string() : "";  // HASH/NAME.zip/…
+}
+
 }  // namespace afterglow

@@ -34,4 +34,7 @@ bool is_zip(const std::filesystem::path& path);
 Result<std::filesystem::path> open_zip(const std::filesystem::path& zip, const std::filesystem::path& cache,
                                        const PackLimits& limits = {});
 
+/// The zip that `open_zip` has unpacked the file from, "NAME.zip"; empty: it lies in no such folder.
+std::string pack_of(const std::filesystem::path& file, const std::filesystem::path& cache);
+
 }  // namespace afterglow

@@ -45,7 +45,8 @@ class Rewriter {
     for (auto edit = edits.begin(); edit != edits.end(); ++edit) {
       const bool again =
           std::any_of(edit + 1, edits.end(), [&](const PresetEdit& later) { return later.name() == edit->name(); });
-      if (!again) AFTERGLOW_CHECK(prepare(*edit));
+      if (again) continue;
+      if (auto reason = prepare(*edit)) out_.refused.push_back({*edit, std::move(*reason)});
     }
     // From the end of the text to its beginning, so that places stay where they were found.
     std::stable_sort(tasks_.begin(), tasks_.end(),
@@ -70,22 +71,21 @@ class Rewriter {
                            : remove_at(text, file_, task.place, task.edit, task.wanted);
   }
 
-  // Adds the tasks of an edit, or the reason why there is none. Errors: usage.
-  Result<void> prepare(const PresetEdit& edit) {
+  // Adds the task of an edit, if it is one; the reason why it cannot be made.
+  std::optional<Error> prepare(const PresetEdit& edit) {
     Task task{edit, {}, {}, {}};
-    AFTERGLOW_TRY(task.said, said_of(preset_, edit));
+    auto said = said_of(preset_, edit);
+    if (!said) return said.error();
+    task.said = std::move(*said);
     task.wanted = edit.value.value_or(task.said.schema.default_value);
     if (task.wanted.type != task.said.schema.type)
       return Error{ErrorKind::usage, fmt::format("{} is of another type", edit.name()), "", 0,
                    allowed_text(task.said.schema)};
-    AFTERGLOW_CHECK(check_value(edit.name(), task.said.schema, task.wanted));
+    if (const auto checked = check_value(edit.name(), task.said.schema, task.wanted); !checked) return checked.error();
     const bool removes = !edit.value && !edit.volume.empty();
     const bool is_there = removes ? !task.said.value : task.said.value && is_same(*task.said.value, task.wanted);
     if (is_there && !task.said.moving && edit.value) return {};
-    if (const auto reason = choose_place(task)) {
-      out_.refused.push_back({edit, *reason});
-      return {};
-    }
+    if (auto reason = choose_place(task)) return reason;
     if (task.said.blended)
       out_.notes.push_back(fmt::format("{}: volumes are blended over it; see `afterglow explain`", edit.name()));
     tasks_.push_back(std::move(task));
@@ -97,12 +97,15 @@ class Rewriter {
     const auto places = places_of(lua_, preset_, file_, task.edit);
     if (!places) return places.error();
     std::optional<Error> reason;
+    bool expression = false;
     for (const Place& place : *places) {
       task.place = place;
       auto failure = try_place(task, places->size() == 1);
       if (!failure) return {};
       // An expression says most; else the first place, which fits best.
-      if (!reason) reason = std::move(failure);
+      const bool is_expression = !change_of(lua_, task);
+      if (!reason || (is_expression && !expression)) reason = std::move(failure);
+      expression = expression || is_expression;
     }
     return reason;
   }

@@ -41,7 +41,7 @@ struct WrittenSetting {
 
 struct RefusedSetting {
   PresetEdit edit;
-  Error reason;  ///< file and line of what stands in the way, with its expression
+  Error reason;  ///< file and line of what stands in the way, with its expression; usage: a name or value is wrong
 };
 
 /// What edits make of a preset's text. `text` equals `before` when nothing is to be changed.
@@ -54,8 +54,8 @@ struct Rewrite {
 
 /// Pure text and scripts: no file is written. `options`: as the preset is loaded; its overrides and text are ignored.
 /// `before` is the text of `file`, which other scripts and effects are found beside. Errors (script): the preset does
-/// not load; the new text would not give the wanted settings, or would change others. Errors (usage): unknown entries,
-/// settings and volumes, values of another type.
+/// not load; the new text would not give the wanted settings, or would change others. Unknown entries, settings and
+/// volumes, and values that are not allowed, are refused, each by itself.
 Result<Rewrite> rewrite_preset(const std::filesystem::path& file, const std::string& before,
                                const std::vector<PresetEdit>& edits, const PresetOptions& options);
 
@@ -75,7 +75,7 @@ class PresetWriter {
   /// Reads the file; writes nothing. Errors: as rewrite_preset; io (also: the file is no longer `working`'s base).
   Result<Rewrite> plan(const std::vector<PresetEdit>& edits, const std::optional<WorkingText>& working = {}) const;
   /// Replaces the file, whole or not at all; links are followed, mode bits kept. Does nothing when there is no change.
-  /// Errors (io): the file is no longer what the plan was made from; it cannot be written.
+  /// Errors (io): the file is no longer what the plan was made from; it cannot be written. Usage: it lies in a pack.
   Result<void> save(const Rewrite& rewrite);
 
   /// How many saves can be taken back, at most 100.

@@ -54,6 +54,8 @@ Error differs(const std::string& name, const std::string& before, const std::str
   return {ErrorKind::script, fmt::format("nothing was written: {} would become {} instead of {}", name, after, before)};
 }
 
+std::string shown_kind(const std::string& kind) { return kind.empty() ? "the default" : kind; }
+
 Result<void> check_value(const std::string& name, const std::optional<SettingValue>& before,
                          const std::optional<SettingValue>& after) {
   const bool same = before.has_value() == after.has_value() && (!before || *before == *after);
@@ -72,9 +74,9 @@ Result<void> check_setting_of(const StackEntry& entry, const SettingHistory& bef
   if (const auto* edit = edit_of(edits, entry.name, before.name, "")) {
     AFTERGLOW_CHECK(
         check_wanted(*edit, edit->value.value_or(before.default_value), after.preset.value_or(after.default_value)));
-    if (after.preset && after.kind != "fixed") return differs(name, "fixed", after.kind);
+    if (after.preset && after.kind != "fixed") return differs(name, "fixed", shown_kind(after.kind));
   } else {
-    if (before.kind != after.kind) return differs(name, before.kind, after.kind);
+    if (before.kind != after.kind) return differs(name, shown_kind(before.kind), shown_kind(after.kind));
     AFTERGLOW_CHECK(check_value(name, before.preset, after.preset));
   }
   for (const auto& volume : after.volumes)

@@ -2,6 +2,8 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/pack.h"
+#include "core/paths.h"
 #include "core/replace_file.h"
 #include "edit/write_back.h"
 
@@ -36,6 +38,9 @@ Result<Rewrite> PresetWriter::plan(const std::vector<PresetEdit>& edits,
 
 Result<void> PresetWriter::save(const Rewrite& rewrite) {
   if (rewrite.text == rewrite.before) return {};
+  if (const std::string pack = pack_of(file_, cache_folder()); !pack.empty())
+    return Error{ErrorKind::usage, "lies in the pack " + pack + ", and packs are not written: copy or unpack it first",
+                 file_.filename().string()};
   AFTERGLOW_CHECK(expect(rewrite.before));
   AFTERGLOW_CHECK(replace_file_atomically(file_, rewrite.text));
   saves_.push_back({rewrite.before, rewrite.text});

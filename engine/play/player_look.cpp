@@ -6,6 +6,7 @@
 #include "image/metadata.h"
 #include "play/player.h"
 #include "play/player_state.h"
+#include "script/schema.h"
 
 namespace afterglow {
 namespace {
@@ -230,13 +231,47 @@ bool Player::recall_snapshot(int snapshot) {
 const SettingEdits& Player::edits() const { return state_->edits; }
 void Player::end_gesture() { state_->edits.end_gesture(); }
 
+/// What was written counts from here on, in place of what the command line says of the same setting. That is what was
+/// on screen before.
+void Player::State::take_the_place_of_given(std::vector<BaseChange>& changes) {
+  Stack* stack = first->live().stack();
+  if (!stack) return;
+  const Preset& preset = stack->preset();
+  const auto means = [&](const Override& given, const StackEntry& entry) {
+    const bool name = std::ranges::find(preset.entries(), given.entry, &StackEntry::name) != preset.entries().end();
+    return given.entry == (name ? entry.name : entry.effect);
+  };
+  std::vector<Override>& given = options.live.stack.preset.overrides;
+  for (BaseChange& change : changes) {
+    const auto entry = std::ranges::find(preset.entries(), change.entry, &StackEntry::name);
+    if (entry == preset.entries().end()) continue;
+    const auto schema = preset.setting_schema(*entry, change.setting);
+    std::vector<Override> left;
+    for (const Override& one : given) {
+      if (one.setting != change.setting || !means(one, *entry)) {
+        left.push_back(one);
+        continue;
+      }
+      if (schema)
+        if (const auto value = script::parse_setting(one, *schema, "--set ")) change.before = *value;
+      for (const StackEntry& other : preset.entries())  // that it says the same of
+        if (&other != &*entry && means(one, other)) left.push_back({other.name, one.setting, one.value});
+    }
+    given = std::move(left);
+  }
+}
+
 void Player::rebase(const std::vector<BaseChange>& changes) {
-  state_->edits.rebase(changes);
+  std::vector<BaseChange> written = changes;
+  state_->take_the_place_of_given(written);
+  state_->edits.rebase(written);
   state_->apply_edits();
 }
 
 void Player::rebase(const std::vector<BaseChange>& changes, const TextChange& text) {
-  state_->edits.rebase(changes, text);
+  std::vector<BaseChange> written = changes;
+  state_->take_the_place_of_given(written);
+  state_->edits.rebase(written, text);
   state_->apply_edits();
 }
 

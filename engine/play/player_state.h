@@ -79,6 +79,7 @@ struct Player::State {
   BuildContext context(int position, int proxy) const;
   Result<Picture> whole_frame();
   void apply_edits();
+  void take_the_place_of_given(std::vector<BaseChange>& changes);
   struct Looked;
   Result<Looked> look(Of of);  ///< there is a picture, and what is asked for has run
 };

@@ -233,7 +233,8 @@ Result<void> check_value(const std::string& full_name, const SettingSchema& sche
   std::copy(value.number.begin(), value.number.end(), given.list.begin());
   given.number = value.number[0];
   given.text = value.choice;
-  if (value.type == SettingType::enumeration) given.kind = Value::Kind::text;
+  if (value.type == SettingType::enumeration || value.type == SettingType::file || value.type == SettingType::text)
+    given.kind = Value::Kind::text;
   if (value.type == SettingType::boolean) given.kind = Value::Kind::boolean;
   if (value.type == SettingType::integer || value.type == SettingType::number) given.kind = Value::Kind::number;
   auto checked = check_setting(full_name, schema, given);

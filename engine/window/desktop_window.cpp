@@ -143,9 +143,16 @@ void DesktopWindow::take(GLFWwindow* window, const InputEvent& event) {
   events.input.back().time = glfwGetTime();
 }
 
+int key_of_letter(int key, const char* name) {
+  if (!name || name[0] == '\0' || name[1] != '\0') return key;
+  const char letter = static_cast<char>(name[0] & ~0x20);  // in capitals
+  return letter >= 'A' && letter <= 'Z' ? GLFW_KEY_A + (letter - 'A') : key;
+}
+
 void DesktopWindow::on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
   take(window, {.kind = InputEvent::Kind::key,
-                .code = key,
+                .code = key_of_letter(key, glfwGetKeyName(key, scancode)),
+                .physical = key,
                 .scancode = scancode,
                 .down = action != GLFW_RELEASE,
                 .repeat = action == GLFW_REPEAT,

@@ -27,6 +27,10 @@ struct WindowEvents {
   std::vector<std::filesystem::path> dropped;
 };
 
+/// The key (GLFW_KEY_…) whose letter a key has in the layout that is in use, by its name there ("a"); keys without a
+/// letter of ASCII stay what they are.
+int key_of_letter(int key, const char* name);
+
 /// One at a time in a process; main thread alone, except where noted.
 class DesktopWindow {
  public:

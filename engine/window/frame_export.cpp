@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "window/frame_export.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
+#include "batch/batch_run.h"
 #include "image/sequence.h"
 #include "image/writer.h"
 
@@ -12,27 +15,65 @@ namespace {
 
 constexpr std::size_t kMostAtOnce = 4;  // whole pictures in memory
 
+/// Is the file one of those that are played?
+bool is_played(const Footage& footage, const fs::path& file) {
+  std::error_code none;
+  for (int picture = 0; picture < footage.pictures(); ++picture)
+    for (const fs::path& source : footage.files(picture))
+      if (fs::equivalent(source, file, none)) return true;
+  return false;
+}
+
+/// The frame that is shown, among all there are.
+std::string key_of(Player& player) {
+  const ShownFrame& shown = player.shown();
+  const Footage& footage = player.footage();
+  const bool known = shown.position >= 0 && shown.position < footage.frames();
+  return fmt::format("{} {} {}", known ? footage.file(footage.frame(shown.position).picture).string() : "", shown.name,
+                     shown.number);
+}
+
 }  // namespace
 
 Result<fs::path> FrameExport::file_for(const std::string& picture, int number) const {
   std::error_code none;
-  if (to_.empty() || fs::is_directory(to_, none)) {
+  const bool video = !to_.empty() && is_one_output(to_.string());  // the frame goes beside it
+  if (to_.empty() || video || fs::is_directory(to_, none) || !new_folder(to_.string()).empty()) {
     // "clip.mp4, frame 7" is a name for people.
     const std::string stem = fs::path(picture.substr(0, picture.find(','))).stem().string();
     const std::string frame = picture.find(',') == std::string::npos ? "" : "." + std::to_string(number);
-    return to_ / (stem + frame + "_graded.exr");
+    return (video ? to_.parent_path() : to_) / (stem + frame + "_graded.exr");
   }
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(to_.string()));
   return pattern.file(number);
+}
+
+/// The file that the shown frame goes to. Errors: it is one that is played; names that are no pattern.
+Result<fs::path> FrameExport::free_file(Player& player) {
+  AFTERGLOW_TRY(const fs::path wanted, file_for(player.shown().name, player.shown().number));
+  const std::string frame = key_of(player);
+  fs::path file = wanted;
+  std::error_code none;
+  for (int n = 2; fs::exists(file, none) || mine_.contains(file); ++n) {
+    if (fs::exists(file, none) && is_played(player.footage(), file))
+      return Error{ErrorKind::usage, "it is played and would be overwritten by its own result; nothing was written",
+                   file.string()};
+    const auto own = mine_.find(file);
+    if (own != mine_.end() && own->second == frame) return file;
+    file = wanted.parent_path() / fmt::format("{}_{}{}", wanted.stem().string(), n, wanted.extension().string());
+  }
+  mine_[file] = frame;
+  return file;
 }
 
 void FrameExport::begin(Player& player, Ui& ui) {
   const ShownFrame& shown = player.shown();
   if (running_.size() >= kMostAtOnce) return ui.say("frames are being written; a moment");
   if (shown.unreadable || shown.failed) return ui.say("this frame is not there: nothing was written");
-  const auto file = file_for(shown.name, shown.number);
+  const auto file = free_file(player);
+  const auto folder = make_folder(new_folder(to_.string()));
   auto picture = player.screenshot();
-  const Error* error = !file ? &file.error() : !picture ? &picture.error() : nullptr;
+  const Error* error = !file ? &file.error() : !folder ? &folder.error() : !picture ? &picture.error() : nullptr;
   if (error) return ui.say(error->text());
   running_.push_back(std::async(std::launch::async, [this, to = *file, frame = std::move(*picture)] {
     return Written{to, write_picture(frame, to, {}, diagnostics_)};

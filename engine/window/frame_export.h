@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <future>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,14 @@ namespace afterglow {
 /// Drawing thread alone; files are written on threads of their own.
 class FrameExport {
  public:
-  /// `to`: a file (out.####.png takes the frame's number) or a folder (NAME_graded.exr in it).
+  /// `to`: a file (out.####.png takes the frame's number), a folder (NAME_graded.exr in it; one that ends in '/' is
+  /// made) or a video (NAME_graded.exr beside it).
   FrameExport(std::filesystem::path to, Diagnostics& diagnostics) : to_(std::move(to)), diagnostics_(diagnostics) {}
   /// Waits for what is being written.
   ~FrameExport() = default;
 
-  /// Takes the frame from the device and begins to write it.
+  /// Takes the frame from the device and begins to write it. Files that are there stay: the frame gets a name that is
+  /// free, but for its own file of before, which it replaces. What is played is never written over.
   void begin(Player& player, Ui& ui);
   /// In each turn: tells what was written or why not.
   void poll(Ui& ui);
@@ -32,8 +35,11 @@ class FrameExport {
     std::filesystem::path file;
     Result<void> done;
   };
+  Result<std::filesystem::path> free_file(Player& player);
+
   std::filesystem::path to_;
   Diagnostics& diagnostics_;
+  std::map<std::filesystem::path, std::string> mine_;  ///< which frame went to a file
   std::vector<std::future<Written>> running_;
 };
 

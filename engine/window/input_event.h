@@ -9,6 +9,7 @@ struct InputEvent {
   Kind kind = Kind::move;
   double x = 0, y = 0;  ///< move: in the window; wheel: how far
   int code = 0;         ///< button; key (GLFW_KEY_…)
+  int physical = 0;     ///< key: where it is, as on a keyboard of the USA; `code` goes by the letter that it has
   int scancode = 0;     ///< key
   bool down = false;    ///< button, key: it went down; focus: it came
   bool repeat = false;  ///< key: it is held

@@ -59,6 +59,9 @@ void press_by_enter(Context& context) {
   }
 }
 
+/// Later backends look the letter up themselves.
+int imgui_key(const InputEvent& event) { return IMGUI_VERSION_NUM >= 18700 ? event.physical : event.code; }
+
 }  // namespace
 
 Interface::Interface(GLFWwindow* window) : pointer_(kElsewhere) {
@@ -127,7 +130,7 @@ void Interface::feed(const InputEvent& event) {
       ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
       break;
     case Kind::key:
-      ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode,
+      ImGui_ImplGlfw_KeyCallback(window_, imgui_key(event), event.scancode,
                                  event.repeat ? GLFW_REPEAT
                                  : event.down ? GLFW_PRESS
                                               : GLFW_RELEASE,
@@ -223,6 +226,12 @@ void Interface::navigate(const char* name) {
 bool Interface::holds_something() const {
   const ImGuiContext& context = *ImGui::GetCurrentContext();
   return context.ActiveId != 0 || !context.OpenPopupStack.empty();
+}
+
+bool Interface::close_popups() {
+  if (ImGui::GetCurrentContext()->OpenPopupStack.empty()) return false;
+  ImGui::ClosePopupToLevel(0, true);
+  return true;
 }
 
 bool Interface::wants_keyboard() const {

@@ -42,6 +42,8 @@ class Interface {
   void navigate(const char* window);
   /// Something is held, typed or open that Escape ends first.
   bool holds_something() const;
+  /// Closes menus, lists of choices and pickers of colours that are open; false: there was none. Not within a frame.
+  bool close_popups();
   bool wants_keyboard() const;  ///< a text is being typed, or is from the next frame on: keys are no shortcuts
   int press_mods() const { return pressed_.mods; }  ///< GLFW_MOD_… of the last press of a button
   bool wants_mouse() const;                         ///< the pointer is on the interface, or holds a part of it

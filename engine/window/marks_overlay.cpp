@@ -34,6 +34,11 @@ void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place) {
   frame(list, {from.x - spare, from.y - spare}, {to.x + spare, to.y + spare}, ui.px(1));
 }
 
+std::string frame_mark_text(const ShownFrame& shown, bool picture) {
+  if (!shown.unreadable) return fmt::format("Frame {} is missing; {} is shown", shown.number, shown.name);
+  return fmt::format("Frame {} cannot be read{}", shown.number, picture ? "; an earlier picture is shown" : "");
+}
+
 void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& place, const OverlayArea& area) {
   const ShownFrame& shown = player.shown();
   if (!shown.held && !shown.unreadable) return;
@@ -45,9 +50,7 @@ void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& p
   from = {std::max(from.x, area.at.x) + line / 2, std::max(from.y, area.at.y) + line / 2};
   to = {std::min(to.x, area.at.x + area.size.x) - line / 2, std::min(to.y, area.at.y + area.size.y) - line / 2};
   if (place.picture.area() > 0) list.AddRect(from, to, color, 0, 0, line);
-  const std::string text = shown.unreadable
-                               ? fmt::format("Frame {} cannot be read; an earlier picture is shown", shown.number)
-                               : fmt::format("Frame {} is missing; {} is shown", shown.number, shown.name);
+  const std::string text = frame_mark_text(shown, place.picture.area() > 0);
   begin_sheet("frame", {area.at.x + area.size.x / 2, area.at.y + ui.px(14)}, {0.5f, 0}, ui, ImGuiWindowFlags_NoInputs);
   ImGui::PushTextWrapPos(sheet_wrap(ui, area.size.x));
   colored(color, text);

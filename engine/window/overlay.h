@@ -56,6 +56,8 @@ void draw_region(const Rect& region, const Ui& ui, const OverlayPicture& place);
 void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place);
 /// Guides of the view, and what its form leaves out, over each picture that is shown.
 void draw_guides(const View& view, const Ui& ui, const OverlayPicture& place);
+/// What the mark says; `picture`: there is one on screen.
+std::string frame_mark_text(const ShownFrame& shown, bool picture);
 /// Around the picture and above it: that it is not the frame that is asked for, because that is missing or unreadable.
 void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& place, const OverlayArea& area);
 /// Lower left: values of source and result. In a narrow part of the window a column, which makes way for scopes.

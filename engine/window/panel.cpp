@@ -6,30 +6,48 @@
 #include <algorithm>
 
 #include "script/build.h"
+#include "window/kept_preset.h"
 #include "window/panel_row.h"
 #include "window/view_controls.h"
 
 namespace afterglow {
-void Panel::save(PanelPort& port) {
+bool Panel::save(PanelPort& port) {
+  if ((stack_.busy() || !unsaved(port).empty()) && !keeper_of(save_.file()).empty()) {
+    save_as();
+    return true;
+  }
   save_waits_ = stack_.busy();
   if (!save_waits_) save_.save(port, bases_);
+  return false;
 }
 
 namespace {
 
-/// Names without an extension are presets; relative ones lie beside the one that is copied.
+std::string name_of(const SettingEdit& edit) {
+  return edit.entry.empty() ? edit.setting : edit.entry + "." + edit.setting;
+}
+
+/// Is the error about what was changed? It says the setting, the value, or the file that the value names.
+bool names(const Error& error, const SettingEdit& edit) {
+  const auto says = [&](const std::string& text) { return error.message.find(text) != std::string::npos; };
+  const bool its_file =
+      edit.value.type == SettingType::file && !edit.value.choice.empty() && error.file.ends_with(edit.value.choice);
+  return says(name_of(edit)) || says(fmt::format("{} = {}", edit.setting, edit.value.text())) || its_file;
+}
+
+/// A preset's name ends in ".lua", whatever dots it has.
 std::filesystem::path copy_of(const std::filesystem::path& preset, const std::string& name) {
-  std::filesystem::path file = preset.parent_path() / name;
-  if (file.extension().empty()) file += ".lua";
+  std::filesystem::path file = folder_for_copies(preset) / name;
+  if (file.extension() != ".lua") file += ".lua";
   return file;
 }
 
 }  // namespace
 
 std::string Panel::unsaved(PanelPort& port) const {
-  if (save_.settling()) return {};
   const auto& edits = port.edits().edits();
-  const auto count = std::ranges::count_if(edits, [](const SettingEdit& edit) { return !edit.entry.empty(); });
+  const auto count = std::ranges::count_if(
+      edits, [&](const SettingEdit& edit) { return !edit.entry.empty() && !save_.settles(edit); });
   const bool stack = port.edits().stack_text() != nullptr;
   if (count == 0 && !stack) return {};
   const std::string settings = count == 1 ? "1 setting" : fmt::format("{} settings", count);
@@ -41,6 +59,8 @@ void Panel::turn(Ui& ui, PanelPort& port) {
   if (save_.poll(port, bases_)) ui.say(save_.message());
   if (const auto copy = save_.take_copy()) ui.open(copy->string());
   if (stack_.poll(port, !save_.busy())) ui.say(stack_.message());
+  const bool told = std::exchange(conflict_told_, stack_.conflict());
+  if (stack_.conflict() && !told) ui.say(conflict_text());
   // What was asked for before is part of what is saved.
   if (save_waits_ && !stack_.busy()) {
     save_waits_ = false;
@@ -68,7 +88,7 @@ void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
     draw_head(ui, port);
     if (ImGui::CollapsingHeader("View")) draw_view_controls(ui, port);
     draw_settings(ui, port);
-    draw_outcome(ui);
+    draw_outcome(ui, port);
   }
   ImGui::End();
   draw_windows(ui, port);
@@ -84,10 +104,17 @@ void Panel::draw_windows(Ui& ui, PanelPort& port) {
 }
 
 void Panel::save_as() {
-  const std::filesystem::path folder = save_.file().parent_path();
+  const std::filesystem::path folder = folder_for_copies(save_.file());
+  const std::string keeper = keeper_of(save_.file());
+  const std::filesystem::path same = folder / save_.file().filename();
+  std::error_code ec;
+  const std::filesystem::path name = !std::filesystem::exists(same, ec) ? same : free_name(same);
+  const std::string place = "In " + (folder.empty() ? "the current folder" : folder.string());
   NameDialog::Question question{.title = "Save preset as",
-                                .note = "In " + (folder.empty() ? "the current folder" : folder.string()),
-                                .name = free_name(save_.file()).filename().string(),
+                                .note = keeper.empty() ? place
+                                                       : fmt::format("{} is of {} and stays. {}",
+                                                                     save_.file().filename().string(), keeper, place),
+                                .name = name.filename().string(),
                                 .button = "Save",
                                 .in_the_way = {}};
   question.in_the_way = [preset = save_.file()](const std::string& name) -> std::optional<std::string> {
@@ -115,12 +142,19 @@ bool Panel::close_windows() {
 }
 
 /// While the file has an error the picture is that of the last good one: settings of a file that cannot be run are
-/// shown, and rest.
+/// shown, and rest. What was changed here may be what is wrong, and is mended here.
 void Panel::draw_settings(Ui& ui, PanelPort& port) {
-  const bool broken = port.status().error.has_value();
-  if (broken && port.build()) {
+  const auto error = port.status().error;
+  const auto& edits = port.edits().edits();
+  const bool broken = error && edits.empty();
+  if (error && port.build()) {
+    const auto blamed = std::ranges::find_if(edits, [&](const SettingEdit& edit) { return names(*error, edit); });
+    const std::string text = broken ? "The preset has an error. Settings rest until it is mended."
+                             : blamed == edits.end()
+                                 ? "The preset has an error: in the file, or by a change made here."
+                                 : fmt::format("The error is in your change of {}.", name_of(*blamed));
     ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
-    ImGui::TextWrapped("The preset has an error. Settings rest until it is mended.");
+    ImGui::TextWrapped("%s", text.c_str());
     ImGui::PopStyleColor();
   }
   ui.values_apply = !broken;
@@ -168,33 +202,49 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
                            ImGuiInputTextFlags_AutoSelectAll);
 }
 
+std::string Panel::conflict_text() const {
+  return fmt::format(
+      "{0} was changed since its stack was changed here. The stack of here is shown, and edits of {0} have no effect",
+      save_.file().filename().string());
+}
+
 /// The file was changed since the stack was changed here: a way to each.
 void Panel::draw_conflict(const Ui& ui, PanelPort& port) {
   if (!stack_.conflict()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
-  ImGui::TextWrapped("%s was changed since its stack was changed here.", save_.file().filename().string().c_str());
+  ImGui::TextWrapped("%s", conflict_text().c_str());
   ImGui::PopStyleColor();
+  draw_choice(ui, port);
+}
+
+void Panel::draw_choice(const Ui& ui, PanelPort& port) {
   if (small_button(ui, "Keep mine", "The stack as it is here; Save writes it over the file's")) stack_.keep();
   ImGui::SameLine();
   if (small_button(ui, "Take the file's", "The stack that the file has now; Undo brings this one back"))
     stack_.take(port);
 }
 
-// What the last save left out and why, or why it failed, over the end of the panel: nothing moves for it. What went
-// well is said over the picture for a moment.
-void Panel::draw_outcome(Ui& ui) {
+// What the last save left out and why, or why it failed, over the end of the panel: nothing moves for it. So is a stack
+// that the file disagrees with: the panel's top may be out of sight. What went well is said over the picture for a
+// moment.
+void Panel::draw_outcome(Ui& ui, PanelPort& port) {
   const bool saved = save_.failed() || !save_.refused().empty() || !save_.notes().empty();
-  if (!saved && !stack_.failed()) return;
+  const bool conflict = stack_.conflict();
+  if (!saved && !stack_.failed() && !conflict) return;
   std::vector<std::pair<ImU32, std::string>> lines;
+  if (conflict) lines.emplace_back(ui_color::kWarning, conflict_text());
   if (stack_.failed()) lines.emplace_back(ui_color::kError, stack_.message());
-  if (saved) lines.emplace_back(save_.failed() ? ui_color::kError : ui_color::kGood, save_.message());
+  if (saved) {
+    const ImU32 good = save_.refused().empty() ? ui_color::kGood : ui_color::kWarning;
+    lines.emplace_back(save_.failed() ? ui_color::kError : good, save_.message());
+  }
   for (const auto& refused : save_.refused()) lines.emplace_back(ui_color::kWarning, refused.reason.text());
   for (const auto& note : save_.notes()) lines.emplace_back(ui_color::kDim, note);
 
   const ImGuiStyle& style = ImGui::GetStyle();
   const float width = ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x;
   const float wrap = width - 2 * style.WindowPadding.x;
-  float height = 2 * style.WindowPadding.y + ImGui::GetFrameHeightWithSpacing();
+  float height = 2 * style.WindowPadding.y + (conflict ? 2.0f : 1.0f) * ImGui::GetFrameHeightWithSpacing();
   std::string all;
   for (const auto& [color, text] : lines) {
     height += ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
@@ -210,6 +260,7 @@ void Panel::draw_outcome(Ui& ui) {
       ImGui::TextWrapped("%s", text.c_str());
       ImGui::PopStyleColor();
     }
+    if (conflict) draw_choice(ui, port);
     if (small_button(ui, "Copy", "The messages, to the clipboard")) ui.copy(all);
     ImGui::SameLine();
     if (small_button(ui, "Dismiss", "Hide the messages")) {

@@ -33,7 +33,8 @@ class Panel {
   bool lists_effects() const { return browser_.is_open(); }
 
   // What keys do too.
-  void save(PanelPort& port);
+  /// True: the preset is not to be written over, and a name for a copy is asked for; see keeper_of.
+  bool save(PanelPort& port);
   void undo_save(PanelPort& port) { save_.undo(port, bases_); }
   /// The cursor goes into the search field with the next draw.
   void search() { focus_search_ = true; }
@@ -52,17 +53,21 @@ class Panel {
   std::string unsaved(PanelPort& port) const;
   const PanelSave& saving() const { return save_; }
   bool busy() const { return save_.busy() || save_waits_; }
+  bool asks_for_name() const { return save_as_.is_open(); }
   const PanelStack& stack() const { return stack_; }
 
  private:
   void draw_head(Ui& ui, PanelPort& port);
-  void draw_outcome(Ui& ui);
+  void draw_outcome(Ui& ui, PanelPort& port);
   void draw_conflict(const Ui& ui, PanelPort& port);
+  void draw_choice(const Ui& ui, PanelPort& port);
+  std::string conflict_text() const;
   void draw_windows(Ui& ui, PanelPort& port);
   void draw_settings(Ui& ui, PanelPort& port);
   void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
   void draw_entry(Ui& ui, PanelPort& port, std::size_t index);
+  static void draw_lost(const Ui& ui, PanelPort& port, const Build& build);
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
   void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, bool changed);
   void draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry);
@@ -80,8 +85,9 @@ class Panel {
   std::function<EffectBrowser::Source()> pictures_ = [] { return EffectBrowser::Source(); };
   NameDialog save_as_;
   bool save_waits_ = false;  ///< for changes of the stack
-  StackText text_;           ///< that the bases are of
-  std::string chosen_;       ///< the entry that keys are about
+  bool conflict_told_ = false;
+  StackText text_;      ///< that the bases are of
+  std::string chosen_;  ///< the entry that keys are about
   bool scroll_to_chosen_ = false;
   struct {
     std::string effect;

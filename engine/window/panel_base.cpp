@@ -7,12 +7,24 @@
 
 namespace afterglow {
 
-std::optional<SettingValue> base_value(const Build& build, const std::string& entry, const std::string& setting) {
+namespace {
+
+const SettingHistory* history_of(const Build& build, const std::string& entry, const std::string& setting) {
   for (const auto& history : build.explanation->entries) {
     const SettingHistory* found = history.name == entry ? history.find(setting) : nullptr;
-    if (found) return found->preset ? *found->preset : found->default_value;
+    if (found) return found;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+/// A curve or a function says another value with each frame, though nothing was changed.
+bool moves(const SettingHistory& history) { return history.preset && history.kind != "fixed"; }
+
+}  // namespace
+
+std::optional<SettingValue> base_value(const Build& build, const std::string& entry, const std::string& setting) {
+  const SettingHistory* history = history_of(build, entry, setting);
+  return history ? std::optional(history->preset.value_or(history->default_value)) : std::nullopt;
 }
 
 bool same_value(const SettingValue& a, const SettingValue& b) {
@@ -34,8 +46,9 @@ void EditBases::follow(PanelPort& port) {
   const SettingEdits& edits = port.edits();
   std::erase_if(bases_, [&](const Base& base) { return !edits.value(base.entry, base.setting); });
   for (const SettingEdit& edit : edits.edits()) {
+    const SettingHistory* history = history_of(*build, edit.entry, edit.setting);
+    if (!history || moves(*history)) continue;
     const auto now = base_value(*build, edit.entry, edit.setting);
-    if (!now) continue;
     Base* base = base_of(edit.entry, edit.setting);
     if (!base) {
       bases_.push_back({edit.entry, edit.setting, *now});

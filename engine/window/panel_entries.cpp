@@ -29,6 +29,14 @@ PanelRow row_of(const StackEntry& entry, const SettingHistory& history, const Se
   return {entry.name, history.name, schema, value, &history, history.preset.has_value()};
 }
 
+/// Is there a row for what was changed?
+bool has_row(const Build& build, const SettingEdit& edit) {
+  const auto& entries = build.explanation->entries;
+  const auto entry = std::ranges::find(entries, edit.entry, &EntryHistory::name);
+  return edit.entry.empty() ||
+         (entry != entries.end() && (edit.setting == "enabled" || entry->find(edit.setting) != nullptr));
+}
+
 SettingValue boolean(bool on) { return {SettingType::boolean, {on ? 1.0 : 0.0}, ""}; }
 
 }  // namespace
@@ -56,6 +64,32 @@ void Panel::draw_entries(Ui& ui, PanelPort& port) {
   if (!build) return;
   if (build->entries->empty()) ImGui::TextDisabled("The stack has no effects");
   for (std::size_t i = 0; i < build->entries->size(); ++i) draw_entry(ui, port, i);
+  draw_lost(ui, port, *build);
+}
+
+/// Changes of what the file no longer has: Save leaves them out.
+void Panel::draw_lost(const Ui& ui, PanelPort& port, const Build& build) {
+  std::vector<SettingEdit> lost;
+  std::ranges::copy_if(port.edits().edits(), std::back_inserter(lost),
+                       [&](const SettingEdit& edit) { return !has_row(build, edit); });
+  if (lost.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
+  ImGui::TextWrapped("Changes of what the preset no longer has");
+  ImGui::PopStyleColor();
+  ImGui::PushID("lost");
+  for (const SettingEdit& edit : lost) {
+    const std::string name = edit.entry + "." + edit.setting;
+    ImGui::PushID(name.c_str());
+    if (small_button(ui, "x", "Take this change back")) {
+      port.end_gesture();
+      port.reset(edit.entry, edit.setting);
+      port.end_gesture();
+    }
+    ImGui::SameLine();
+    ImGui::TextWrapped("%s = %s", name.c_str(), edit.value.text().c_str());
+    ImGui::PopID();
+  }
+  ImGui::PopID();
 }
 
 void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {

@@ -20,9 +20,9 @@ class Player;
 class PanelPort {
  public:
   virtual ~PanelPort() = default;
-  virtual const Preset* preset() = 0;  ///< of the stack that is shown; null: there was no good one yet
-  virtual const Build* build() = 0;    ///< what it said about the last frame; null: there was none yet
-  virtual LiveStatus status() = 0;
+  virtual const Preset* preset() = 0;                 ///< of the stack that is shown; null: there was no good one yet
+  virtual const Build* build() = 0;                   ///< what it said about the last frame; null: there was none yet
+  virtual LiveStatus status() = 0;                    ///< `building`: `build` is not of the newest files and edits
   virtual const std::vector<Skipped>& skipped() = 0;  ///< effects that the last frame left out, with reasons
   virtual std::vector<KernelTime> times() = 0;        ///< of kernels, as far as they are known
 

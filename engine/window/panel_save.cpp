@@ -76,10 +76,13 @@ void PanelSave::save(PanelPort& port, const EditBases& bases) {
   saving_.clear();
   held_back_.clear();
   const Build* build = port.build();
+  const auto working = stack_.working(port);
   bool arguments = false;
   for (const SettingEdit& edit : port.edits().edits()) {
     if (edit.entry.empty()) {
       arguments = true;
+    } else if (!working && settles(edit)) {
+      continue;  // the file says so
     } else if (const EditConflict* conflict = bases.find(edit.entry, edit.setting)) {
       held_back_.push_back(
           {{edit.entry, edit.setting, edit.value, ""}, conflict_error(writer_.file(), *conflict, edit)});
@@ -90,7 +93,6 @@ void PanelSave::save(PanelPort& port, const EditBases& bases) {
   }
   if (arguments)
     notes_.push_back("Arguments are not part of the preset: they are given by " + argument_words(port.edits()));
-  const auto working = stack_.working(port);
   saving_stack_ = port.edits().stack_text();
   if (stack_.conflict())
     return tell(fmt::format("{} was changed since its stack was changed here: Keep mine or Take the file's",
@@ -154,7 +156,8 @@ PanelSave::Outcome PanelSave::write_copy(const std::vector<PresetEdit>& edits,
 }
 
 bool PanelSave::poll(PanelPort& port, EditBases& bases) {
-  forget_what_is_in_the_file(port, bases);
+  settle(port, bases);
+  forget_refused(port.edits());
   if (!busy() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Outcome outcome = running_.get();
   if (outcome.error) {
@@ -192,29 +195,54 @@ void PanelSave::take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite) {
     for (const BaseChange& change : saving_) bases.expect(change.entry, change.setting, change.after);
     port.rebase(saving_, {rewrite.before, rewrite.text, saving_stack_});
   } else {
-    settling_ = saving_;
+    std::erase_if(settling_, [&](const BaseChange& change) {
+      return std::ranges::any_of(saving_, [&](const BaseChange& later) {
+        return later.entry == change.entry && later.setting == change.setting;
+      });
+    });
+    settling_.insert(settling_.end(), saving_.begin(), saving_.end());
+    generation_ = port.status().generation;
+    port.rebase({});  // builds anew: what comes of that has read the file since
   }
   const std::size_t count = rewrite.written.size();
   const std::string settings = count == 1 ? "1 setting" : fmt::format("{} settings", count);
   const std::string what = !stack ? settings : count == 0 ? "the stack" : "the stack and " + settings;
-  std::string text = count == 0 && !stack ? "The preset says so already"
-                                          : fmt::format("{} written to {}", what, writer_.file().filename().string());
+  const bool nothing = count == 0 && !stack;
+  std::string text = nothing && saving_.empty() ? "Nothing was written"
+                     : nothing                  ? "The preset says so already"
+                               : fmt::format("{} written to {}", what, writer_.file().filename().string());
   if (!refused_.empty()) text = fmt::format("{}; {} left out", text, refused_.size());
   tell(std::move(text), false);
 }
 
+/// What was left out and has been taken back since is no news any more.
+void PanelSave::forget_refused(const SettingEdits& edits) {
+  if (busy() || refused_.empty()) return;
+  std::erase_if(refused_,
+                [&](const RefusedSetting& refused) { return !edits.value(refused.edit.entry, refused.edit.setting); });
+  if (refused_.empty()) dismiss();
+}
+
+bool PanelSave::settles(const SettingEdit& edit) const {
+  return std::ranges::any_of(settling_, [&](const BaseChange& change) {
+    return change.entry == edit.entry && change.setting == edit.setting && change.after == edit.value;
+  });
+}
+
 // The edits go when the preset on screen says the same: dropping them before would show the old values for a moment.
-void PanelSave::forget_what_is_in_the_file(PanelPort& port, EditBases& bases) {
+// What the first build since says otherwise, another program has changed: its edit stays, and is in conflict.
+void PanelSave::settle(PanelPort& port, EditBases& bases) {
   if (settling_.empty() || busy()) return;
   const Build* build = port.build();
-  if (!build || port.status().building) return;
-  const bool all = std::all_of(settling_.begin(), settling_.end(), [&](const BaseChange& change) {
-    // Edited again since: the edit stays, and there is nothing to wait for.
-    return port.edits().value(change.entry, change.setting) != change.after || says(*build, change);
-  });
-  if (!all) return;
-  for (const BaseChange& change : settling_) bases.expect(change.entry, change.setting, change.after);
-  port.rebase(std::exchange(settling_, {}));
+  const LiveStatus status = port.status();
+  if (!build || status.building) return;
+  const auto is_said = [&](const BaseChange& change) { return says(*build, change); };
+  const bool is_later = status.generation > generation_ && !status.error;
+  if (!is_later && !std::ranges::all_of(settling_, is_said)) return;
+  std::vector<BaseChange> changes = std::exchange(settling_, {});
+  for (const BaseChange& change : changes) bases.expect(change.entry, change.setting, change.after);
+  std::erase_if(changes, [&](const BaseChange& change) { return !is_said(change); });
+  port.rebase(changes);
 }
 
 void PanelSave::undo(PanelPort& port, EditBases& bases) {

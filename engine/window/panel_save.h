@@ -38,8 +38,10 @@ class PanelSave {
   void undo(PanelPort& port, EditBases& bases);
   bool can_undo() const { return !busy() && writer_.saves() > 0; }
   bool busy() const { return running_.valid(); }
-  /// Written, and not on screen yet.
+  /// Something is written, and not on screen yet.
   bool settling() const { return !settling_.empty(); }
+  /// This value is.
+  bool settles(const SettingEdit& edit) const;
   /// Takes what has come of a save; to be called in every turn. True when there is something new to tell.
   bool poll(PanelPort& port, EditBases& bases);
   /// Blocks until `poll` has something to take. For tests.
@@ -66,7 +68,8 @@ class PanelSave {
                      const std::filesystem::path& to) const;
   void take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite);
   void tell(std::string message, bool failed);
-  void forget_what_is_in_the_file(PanelPort& port, EditBases& bases);
+  void settle(PanelPort& port, EditBases& bases);
+  void forget_refused(const SettingEdits& edits);
 
   PresetWriter writer_;
   PresetOptions options_;
@@ -82,6 +85,7 @@ class PanelSave {
   std::vector<RefusedSetting> held_back_;         // in conflict with the file
   std::vector<std::vector<BaseChange>> written_;  // by each save that can be taken back
   std::vector<BaseChange> settling_;              // written, and still edits until the new file is shown
+  std::uint64_t generation_ = 0;                  // of the stack that was shown when they were written
   std::string message_;
   bool failed_ = false;
   std::vector<RefusedSetting> refused_;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "window/play_parts.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "window/desktop_window.h"
@@ -86,7 +89,7 @@ void PlayParts::browse_presets() {
 /// The look as it is on screen when the list is opened, with one effect more.
 EffectBrowser::Source PlayParts::effect_pictures() {
   ChangedLook look{.text = {},
-                   .overrides = player_.edits().overrides(preset_options_.overrides),
+                   .overrides = player_.live().overrides(),
                    .arguments = player_.edits().arguments(preset_options_.arguments)};
   if (const StackText& text = player_.edits().stack_text()) look.text = *text;
   const auto changed = std::make_shared<const ChangedLook>(std::move(look));
@@ -132,7 +135,12 @@ void PlayParts::draw_dialogs(Ui& ui) {
 }
 
 std::string PlayParts::unsaved(bool closing) {
-  const std::string changes = panel_->unsaved(port_);
+  std::string changes = panel_->unsaved(port_);
+  const auto arguments =
+      std::ranges::count_if(player_.edits().edits(), [](const auto& edit) { return edit.entry.empty(); });
+  if (arguments > 0)
+    changes += fmt::format("{}{} {}, which no preset holds: they are given by {}", changes.empty() ? "" : " and ",
+                           arguments, arguments == 1 ? "argument" : "arguments", argument_words(player_.edits()));
   if (!closing || !range_export_.busy()) return changes;
   const std::string rest = "the rest of an export (" + range_export_.state() + ")";
   return changes.empty() ? rest : changes + " and " + rest;
@@ -195,7 +203,7 @@ void PlayParts::add_to(WindowOptions& options) {
   };
   options.transport_shape = [](const Ui& ui, float width) { return transport_bar_shape(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
-  options.save = [this](Player&, Ui&) { panel_->save(port_); };
+  options.save = [this](Player&, Ui&) { return panel_->save(port_); };
   options.unsaved = [this](Player&, bool closing) { return unsaved(closing); };
   options.dialogs = [this](Player&, Ui& ui) { draw_dialogs(ui); };
   options.strip = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { range_export_.draw(ui, place, size); };
@@ -204,7 +212,9 @@ void PlayParts::add_to(WindowOptions& options) {
   options.saving = [this] {
     const PanelSave& save = panel_->saving();
     if (panel_->busy()) return WindowOptions::Saving::busy;
-    return save.failed() || !save.refused().empty() ? WindowOptions::Saving::failed : WindowOptions::Saving::done;
+    const bool asks = panel_->asks_for_name();
+    return asks || save.failed() || !save.refused().empty() ? WindowOptions::Saving::failed
+                                                            : WindowOptions::Saving::done;
   };
   options.undo_save = [this](Player&, Ui& ui) {
     if (!panel_->saving().can_undo()) return ui.say("nothing was saved");

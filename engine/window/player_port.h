@@ -14,7 +14,7 @@ class PlayerPort final : public PanelPort {
 
   const Preset* preset() override;
   const Build* build() override;
-  LiveStatus status() override { return player_.live().status(); }
+  LiveStatus status() override;
   const std::vector<Skipped>& skipped() override;
   std::vector<KernelTime> times() override { return player_.kernel_times(); }
 

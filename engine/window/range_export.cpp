@@ -128,7 +128,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   } else if (look_) {
     preset.text = *look_;
   }
-  preset.overrides = player.edits().overrides(preset.overrides);
+  preset.overrides = player.live().overrides();
   preset.arguments = player.edits().arguments(preset.arguments);
   preset.leave_out_unfit = true;
   const bool one = clip && clips.size() > 1;
@@ -145,7 +145,8 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   out.loop.fps = player.transport().fps();
   out.files.limits = {out.loop.read.max_side, out.loop.read.max_bytes};
   std::error_code none;
-  if (!fs::is_directory(output, none) && !is_one_output(output)) AFTERGLOW_CHECK(check_output(output, {}));
+  const bool folder = fs::is_directory(output, none) || !new_folder(output).empty();
+  if (!folder && !is_one_output(output)) AFTERGLOW_CHECK(check_output(output, {}));
   return out;
 }
 

@@ -33,7 +33,8 @@ struct WindowOptions {
   Part transport;                                                   ///< at the bottom
   std::function<BarShape(const Ui&, float width)> transport_shape;  ///< that it wants
   Part help;                                                        ///< over everything
-  std::function<void(Player&, Ui&)> save;                           ///< Ctrl+S; empty: there is no such thing
+  /// Ctrl+S; empty: there is no such thing. True: a field is about to get the keyboard.
+  std::function<bool(Player&, Ui&)> save;
   /// What the window would forget when it is closed, or else when another preset is opened, for people: "2 settings of
   /// look.lua". Empty: nothing.
   std::function<std::string(Player&, bool closing)> unsaved;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "image/srgb.h"
 
@@ -11,6 +12,7 @@ namespace afterglow {
 namespace {
 
 constexpr int kMaxInteger = 2147483647;
+constexpr std::size_t kMostText = 1000;  // bytes, as scripts take them
 
 // Digits that tell neighbouring values of the range apart.
 const char* number_format(const SettingSchema& schema) {
@@ -68,9 +70,11 @@ bool choice_row(const char* name, const SettingSchema& schema, std::string& choi
 }
 
 bool vector_row(const char* name, const SettingSchema& schema, std::array<double, 3>& number, int count) {
+  const bool by_factors = is_logarithmic(schema);
   if (schema.min && schema.max)
     return ImGui::SliderScalarN(name, ImGuiDataType_Double, number.data(), count, &*schema.min, &*schema.max,
-                                number_format(schema));
+                                by_factors ? "%.4g" : number_format(schema),
+                                by_factors ? ImGuiSliderFlags_Logarithmic : 0);
   return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), count, 0.01f, nullptr, nullptr, "%.3f");
 }
 
@@ -114,8 +118,15 @@ bool color_row(const Ui& ui, const char* name, std::array<double, 3>& number, fl
 }  // namespace
 
 bool is_logarithmic(const SettingSchema& schema) {
-  if (schema.type != SettingType::number || !schema.min || !schema.max || *schema.min < 0) return false;
-  return *schema.max > 100 && (*schema.min == 0 || *schema.max / *schema.min > 100);
+  const std::size_t count = number_count(schema.type);
+  const bool real =
+      schema.type == SettingType::number || schema.type == SettingType::vec2 || schema.type == SettingType::vec3;
+  if (!real || !schema.min || !schema.max || *schema.min < 0) return false;
+  if (*schema.max > 100 && (*schema.min == 0 || *schema.max / *schema.min > 100)) return true;
+  // What is usual would be a few pixels at one end.
+  const auto& usual = schema.default_value.number;
+  const double most = *std::max_element(usual.begin(), usual.begin() + static_cast<std::ptrdiff_t>(count));
+  return *schema.min == 0 && most > 0 && most < *schema.max / 50;
 }
 
 std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const SettingSchema& schema,
@@ -143,14 +154,14 @@ std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const Setti
       changed = choice_row(name, schema, out.choice);
       break;
     case SettingType::file:
-    case SettingType::text: {
-      std::array<char, 512> text{};
-      out.choice.copy(text.data(), text.size() - 1);
-      changed = ImGui::InputText(name, text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-      out.choice = text.data();
-      out.number[0] = 0;
+    case SettingType::text:
+      if (auto text =
+              ui.texts.draw(name, out.choice, schema.type == SettingType::text ? kMostText : TypedText::kMost)) {
+        out.choice = std::move(*text);
+        out.number[0] = 0;
+        changed = true;
+      }
       break;
-    }
     case SettingType::color:
       changed = color_row(ui, name, out.number, width);
       for (double& c : out.number) c = std::isfinite(c) ? std::max(c, 0.0) : 0;

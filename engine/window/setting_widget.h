@@ -15,7 +15,8 @@ namespace afterglow {
 std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const SettingSchema& schema,
                                            const SettingValue& value, float width);
 
-/// Does a slider over the setting's range move by factors? Where it spans more than two decades above 0.
+/// Does a slider over the setting's range move by factors? Where it spans more than two decades above 0, or begins at 0
+/// and the default is a small part of it. Vectors as numbers.
 bool is_logarithmic(const SettingSchema& schema);
 
 }  // namespace afterglow

@@ -15,6 +15,7 @@
 #include "window/atlas_cells.h"
 #include "window/hover_help.h"
 #include "window/sheet_places.h"
+#include "window/typed_text.h"
 #include "window/typed_value.h"
 
 namespace afterglow {
@@ -88,6 +89,7 @@ struct Ui {
     bool begin = false;  ///< it gets the keyboard with the next frame
   } frame_field;
   TypedValue typed;  ///< the setting that is being typed
+  TypedText texts;   ///< …and those that are texts
   AtlasCells cells;  ///< scopes are drawn into them
 
   float px(float size) const { return size * scale; }

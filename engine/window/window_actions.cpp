@@ -245,7 +245,7 @@ bool WindowApp::act_on_preset(Action action) {
       recall_snapshot(static_cast<int>(action) - static_cast<int>(Action::recall_1));
       return true;
     case Action::save:
-      if (options_.save) options_.save(player_, ui);
+      if (options_.save && options_.save(player_, ui)) await_field();
       return true;
     case Action::undo_save:
       if (options_.undo_save) options_.undo_save(player_, ui);
@@ -331,6 +331,7 @@ bool WindowApp::act_on_window(Action action) {
       ui.show_help = !ui.show_help;
       return true;
     case Action::escape:
+      if (interface_->close_popups()) return true;
       if (ui.show_help) {
         ui.show_help = false;
       } else if (!options_.close_windows || !options_.close_windows()) {

@@ -151,7 +151,7 @@ void WindowApp::answer_quit(QuitAnswer answer) {
   quitting_ = Quitting::no;
   if (answer == QuitAnswer::discard) leave();
   if (answer != QuitAnswer::save || !options_.save) return;
-  options_.save(player_, interface_->ui());
+  if (options_.save(player_, interface_->ui())) await_field();
   quitting_ = Quitting::saving;
 }
 

@@ -68,6 +68,17 @@ TEST_F(Packs, TheSamePictureFromAFolderAndAZip) {
   EXPECT_EQ(picture({"warm"}, text("looks")), expected);
 }
 
+/// What a zip was unpacked to belongs to the cache: a change there would be lost, and the zip stay as it was.
+TEST_F(Packs, PresetsInAZipAreNotChanged) {
+  zip("kit.zip");
+  const Outcome outcome = run_here({"set", "kit.zip", "warmth.gain=3"});
+  EXPECT_EQ(outcome.exit_code, kUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("warm.lua: error: lies in the pack kit.zip, and packs are not written"));
+  EXPECT_THAT(run_here({"set", "kit.zip", "warmth.gain=3"}).out, IsEmpty());
+  EXPECT_EQ(run_here({"set", "kit", "warmth.gain=3"}).exit_code, kDone);
+  EXPECT_THAT(read("kit/presets/warm.lua"), HasSubstr("gain = 3"));
+}
+
 TEST_F(Packs, EffectsOfAPackBesideAPreset) {
   write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.warmth { gain = 3 } }\n");
   EXPECT_EQ(run_here({"check", "look.lua"}).exit_code, kScript);

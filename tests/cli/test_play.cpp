@@ -49,6 +49,14 @@ TEST_F(Play, EveryFrameOnceWithFigures) {
       << "from the second frame on: the first starts the clock";
 }
 
+/// What Ctrl+R takes: a video, and a folder that is not there yet.
+TEST_F(Play, ExportsGoToVideosAndNewFolders) {
+  for (const char* to : {"out.mp4", "graded/", "out.####.png"})
+    EXPECT_EQ(play({"in/shot.0001.exr", "--headless", "--fast", "--export", to}).exit_code, kDone) << to;
+  EXPECT_FALSE(fs::exists(path("graded"))) << "nothing was exported";
+  EXPECT_EQ(play({"in/shot.0001.exr", "--headless", "--export", "out.xyz"}).exit_code, kUsage);
+}
+
 TEST_F(Play, ByTheClockUntilSoManyWereShown) {
   const Outcome outcome = play({"in/shot.####.exr", "--headless", "--count", "6", "--fps", "50", "--loop", "ping-pong",
                                 "--report", "play.json"});

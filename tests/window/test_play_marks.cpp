@@ -69,5 +69,18 @@ TEST_F(PlayWindow, AFrameOpensItsSequenceAndClipsFollowEachOther) {
   expect_clean_end();
 }
 
+/// A French keyboard: its A is where others have Q, which closes the window.
+TEST_F(PlayWindow, LettersAreThoseOfTheKeyboard) {
+  ASSERT_EQ(run_on(xvfb_.display(), "setxkbmap fr"), 0);
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(user("mousemove 400 300 key a"));
+  ASSERT_TRUE(user("key Right"));
+  EXPECT_TRUE(program_->wait_for("position 1")) << "it has not closed";
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -225,6 +225,8 @@ TEST_F(WriteBack, EntriesThatAreMadeTogetherStay) {
       "}\nend\nreturn fx.stack(all)\n";
   EXPECT_THAT(refusal(loop, {{"glow#2", "knee", number(1)}}),
               HasSubstr("preset.lua:4: error: glow#2.knee cannot be changed alone: 3 entries are made on this line"));
+  EXPECT_THAT(refusal(head + "fx.glow { }, fx.glow { knee = 1 and 0.1 }" + tail, {{"glow#2", "knee", number(0.5)}}),
+              HasSubstr("preset.lua:3: error: glow#2.knee is computed and stays as it is: 1 and 0.1"));
   // All of them together may be.
   EXPECT_THAT(refusal(loop, {{"glow", "knee", number(1)}}), HasSubstr("cannot be changed alone"));
 }
@@ -339,7 +341,8 @@ TEST_F(WriteBack, NothingElseMayChange) {
 TEST_F(WriteBack, Messages) {
   const auto error = [&](const PresetEdit& edit) {
     const auto out = rewrite(head + "fx.glow {}" + tail, {edit});
-    return out ? "" : out.error().text();
+    EXPECT_EQ(out->text, out->before);
+    return out->refused.empty() ? "" : out->refused[0].reason.text();
   };
   EXPECT_THAT(error({"glo", "knee", number(1)}),
               HasSubstr("the stack has no entry 'glo'; allowed: glow; did you mean 'glow'?"));

@@ -65,6 +65,34 @@ TEST_F(PlayerTest, ArgumentsAndCompositionAreChangedWhilePlaying) {
   EXPECT_THAT(player.live().status().warnings, ::testing::Contains(HasSubstr("--arg stops = 3 is out of range")));
 }
 
+/// What was written counts from then on, not what the command line says of the same setting; undo goes back over it.
+TEST_F(PlayerTest, WhatIsSavedTakesThePlaceOfSet) {
+  write_sequence(2);
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments { post_exposure = 1 }, "
+        "fx.color_adjustments { post_exposure = 0 } }\n");
+  PlayerOptions options;
+  options.live.stack.preset.overrides = {{"color_adjustments#2", "post_exposure", "0.5"},
+                                         {"color_adjustments", "post_exposure", "2"}};
+  Player& player = open(options);
+  turn();
+  EXPECT_FLOAT_EQ(result(), std::exp2(2.5f) / 8);
+  player.set("color_adjustments", "post_exposure", {SettingType::number, {3}, ""});
+  turn();
+  EXPECT_FLOAT_EQ(result(), std::exp2(3.5f) / 8);
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments { post_exposure = 3 }, "
+        "fx.color_adjustments { post_exposure = 0 } }\n");
+  player.rebase(
+      {{"color_adjustments", "post_exposure", {SettingType::number, {1}, ""}, {SettingType::number, {3}, ""}}});
+  reload();
+  EXPECT_TRUE(player.edits().none());
+  EXPECT_FLOAT_EQ(result(), std::exp2(3.5f) / 8) << "the file's, and the other entry's of the command line";
+  ASSERT_TRUE(player.undo());
+  turn();
+  EXPECT_FLOAT_EQ(result(), std::exp2(2.5f) / 8) << "as it was on screen";
+}
+
 TEST_F(PlayerTest, AnErrorKeepsTheLastPictureUntilTheNextGoodSave) {
   write_sequence(2);
   Player& player = open();

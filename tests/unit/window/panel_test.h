@@ -47,6 +47,7 @@ class Port : public PanelPort {
     auto build = preset_->evaluate({.size = {64, 32}}, diagnostics_);
     ASSERT_TRUE(build) << build.error().text();
     build_ = std::move(*build);
+    ++now.generation;
   }
 
   const Preset* preset() override { return preset_.get(); }
@@ -145,6 +146,19 @@ class PanelTest : public ::testing::Test {
     return text ? text : "";
   }
 
+  void press_key(int code) {
+#if IMGUI_VERSION_NUM >= 18700
+    ImGui::GetIO().AddKeyEvent(static_cast<ImGuiKey>(code), true);
+    frame();
+    ImGui::GetIO().AddKeyEvent(static_cast<ImGuiKey>(code), false);
+#else
+    ImGui::GetIO().KeyMap[code] = code;
+    ImGui::GetIO().KeysDown[code] = true;
+    frame();
+    ImGui::GetIO().KeysDown[code] = false;
+#endif
+    frame();
+  }
   void move(float x, float y) { ImGui::GetIO().MousePos = {x, y}; }
   /// The panel makes bloom's intensity 0.5, and then the file 0.9; returns what the file holds.
   std::string change_both() {
@@ -181,6 +195,19 @@ class PanelTest : public ::testing::Test {
         move(x, y);
         frame();
         if (ImGui::GetCurrentContext()->HoveredId == id) return true;
+      }
+    return false;
+  }
+  /// The button in the box at the panel's end.
+  bool find_in_outcome(const std::string& label) {
+    for (float y = kHeight - 8; y > kHeight - 200; y -= 6)
+      for (float x = 16; x < kWidth; x += 8) {
+        move(x, y);
+        frame();
+        const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+        if (window && std::string(window->Name).starts_with("Settings/outcome") &&
+            ImGui::GetCurrentContext()->HoveredId == ImHashStr(label.c_str(), 0, window->ID))
+          return true;
       }
     return false;
   }

@@ -74,5 +74,15 @@ TEST_F(ComparisonText, FilesOfOneNameBringTheirFolders) {
   EXPECT_EQ(text(Compare::source, CompareBy::difference), "difference from what went in");
 }
 
+TEST(FrameMark, SaysWhatIsShown) {
+  ShownFrame shown;
+  shown.number = 5;
+  shown.name = "s.0004.exr";
+  EXPECT_EQ(frame_mark_text(shown, true), "Frame 5 is missing; s.0004.exr is shown");
+  shown.unreadable = Error{ErrorKind::io, "damaged"};
+  EXPECT_EQ(frame_mark_text(shown, true), "Frame 5 cannot be read; an earlier picture is shown");
+  EXPECT_EQ(frame_mark_text(shown, false), "Frame 5 cannot be read") << "there was none before";
+}
+
 }  // namespace
 }  // namespace afterglow::test

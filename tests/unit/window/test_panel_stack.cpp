@@ -77,6 +77,12 @@ TEST_F(PanelTest, StackAndFileDisagree) {
   fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(2));
   port->reload();
   EXPECT_THAT(words(), HasSubstr("look.lua was changed since its stack was changed here."));
+  EXPECT_THAT(ui.message, HasSubstr("edits of look.lua have no effect")) << "over the picture";
+  ui.message.clear();
+  frame();
+  EXPECT_EQ(ui.message, "") << "once";
+  EXPECT_TRUE(find_in_outcome("Keep mine")) << "where nothing scrolls";
+  EXPECT_TRUE(find_in_outcome("Take the file's"));
   panel->save(*port);
   frame();
   EXPECT_EQ(*read_file(file), text) << "nothing is written over it";

@@ -32,6 +32,20 @@ TEST(SettingWidget, SlidersByFactorsWhereTheRangeIsWide) {
   EXPECT_TRUE(is_logarithmic(schema));
   schema.min = -1000;
   EXPECT_FALSE(is_logarithmic(schema));
+  schema.min = 0;
+  schema.type = SettingType::vec2;
+  EXPECT_TRUE(is_logarithmic(schema));
+  schema.max = 100;
+  EXPECT_FALSE(is_logarithmic(schema)) << "its default is 0";
+  schema.default_value.number = {1, 0.5};
+  EXPECT_TRUE(is_logarithmic(schema)) << "the default would be a hundredth of the slider from its end";
+  schema.type = SettingType::number;
+  EXPECT_TRUE(is_logarithmic(schema));
+  schema.default_value.number = {10};
+  EXPECT_FALSE(is_logarithmic(schema));
+  schema.type = SettingType::integer;
+  schema.default_value.number = {1};
+  EXPECT_FALSE(is_logarithmic(schema));
 }
 
 }  // namespace

@@ -46,5 +46,18 @@ TEST(Shortcuts, HeldKeysRepeatWhereThatIsMeant) {
   EXPECT_EQ(action_of({GLFW_KEY_F, GLFW_MOD_ALT, false}), std::nullopt);
 }
 
+/// French keyboards have A where those of the USA have Q, German ones Z where they have Y.
+TEST(Shortcuts, LettersAreThoseOfTheLayout) {
+  EXPECT_EQ(key_of_letter(GLFW_KEY_Q, "a"), GLFW_KEY_A);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_Y, "z"), GLFW_KEY_Z);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_SEMICOLON, "m"), GLFW_KEY_M);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_S, "s"), GLFW_KEY_S);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_1, "&"), GLFW_KEY_1) << "digits stay where they are";
+  EXPECT_EQ(key_of_letter(GLFW_KEY_LEFT_BRACKET, "\xc3\xbc"), GLFW_KEY_LEFT_BRACKET);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_Q, "\xd0\xb9"), GLFW_KEY_Q) << "no letter of ASCII";
+  EXPECT_EQ(key_of_letter(GLFW_KEY_F1, nullptr), GLFW_KEY_F1);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_GRAVE_ACCENT, "@"), GLFW_KEY_GRAVE_ACCENT);
+}
+
 }  // namespace
 }  // namespace afterglow
