@@ -95,6 +95,9 @@ void PlayArguments::add_playing(CLI::App& app) {
 Result<void> PlayArguments::check() const {
   if (!(std::abs(speed) >= Transport::kSlowest && std::abs(speed) <= Transport::kFastest))
     return Error{ErrorKind::usage, fmt::format("'{}' is no speed", speed), "--speed", 0, "0.1 to 8, -0.1 to -8"};
+  if (std::ranges::count(inputs, "-") > 0)
+    return Error{ErrorKind::usage, "standard input cannot be played: playback goes back and forth", "afterglow play", 0,
+                 "files; `afterglow run` takes -"};
   if (!geometry.empty()) AFTERGLOW_CHECK(parse_geometry(geometry));
   if (headless && !loop.empty() && loop != "once" && count == 0)
     return Error{ErrorKind::usage, fmt::format("--loop {} without a window needs an end: --count N", loop),
