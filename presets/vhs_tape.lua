@@ -16,5 +16,5 @@ return fx.stack {
   fx.color_adjustments { order = 191, saturation = 10, mask = fx.mask.luma { from = 1.5, softness = 1.5, invert = true } },
   fx.tone_mapping { mode = "reinhard" },
   fx.film_grain { intensity = 0.4, response = 0.4, size = 1.6, colored = 1 },
-  fx.glitch { scan_line_jitter = 0.22, line_height = 2, rgb_split = 0.12, horizontal_shake = 0.02 },
+  fx.glitch { scan_line_jitter = 0.22, line_height = 2, rgb_split = 0.12, horizontal_shake = 0.02, edges = "stretch" },
 }
