@@ -6,8 +6,8 @@ return fx.stack {
   name = "Teal and orange",
   requires = "0.2",
   fx.bloom { mode = "scattering", threshold = 1.0, intensity = 0.12, fade_fireflies = true },
+  fx.vignette { intensity = 0.3 },
   fx.color_adjustments { post_exposure = 0.6, contrast = 16 },
   fx.tone_mapping { mode = "neutral" },
   fx.lut { file = "luts/teal_orange.cube", intensity = 0.9 },
-  fx.vignette { at = "after_post_process", order = 110, intensity = 0.3 },
 }

@@ -11,8 +11,10 @@ return fx.stack {
   fx.lens_distortion { intensity = 0.12, scale = 1.04 },
   fx.vignette { intensity = 0.3, smoothness = 0.3, rounded = false },
   fx.white_balance { temperature = -12, tint = 14 },
-  fx.color_adjustments { post_exposure = 1.0, contrast = 18, saturation = 10 },
+  fx.color_adjustments { post_exposure = 1.0, contrast = 18 },
+  -- Not on bright light: a channel below 0 stays 0 under the tone curve, and neon would turn to pure magenta and cyan.
+  fx.color_adjustments { order = 191, saturation = 10, mask = fx.mask.luma { from = 1.5, softness = 1.5, invert = true } },
   fx.tone_mapping { mode = "reinhard" },
   fx.film_grain { intensity = 0.4, response = 0.4, size = 1.6, colored = 1 },
-  fx.glitch { scan_line_jitter = 0.22, line_height = 2, rgb_split = 0.12, horizontal_shake = 0.02 },
+  fx.glitch { scan_line_jitter = 0.22, line_height = 2, rgb_split = 0.12, horizontal_shake = 0.02, edges = "stretch" },
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference/glitch.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/grain.h"
@@ -27,7 +28,8 @@ DoubleImage glitch(const DoubleImage& source, const Glitch& s) {
     const bool jumps = s.scan_line_jitter > 0 && std::abs(random) >= 1 - 1.2 * s.scan_line_jitter;
     const int shift = shake + (jumps ? pixels(random * (0.002 + 0.05 * std::pow(s.scan_line_jitter, 3))) : 0);
     const auto read = [&](int moved, int channel) {
-      return source.at(wrapped(x + moved, width), wrapped(y + roll, height))[channel];
+      const int from = s.stretch ? std::clamp(x + moved, 0, width - 1) : wrapped(x + moved, width);
+      return source.at(from, wrapped(y + roll, height))[channel];
     };
     return Rgba(read(shift + split, 0), read(shift, 1), read(shift - split, 2), source.at(x, y).a);
   });

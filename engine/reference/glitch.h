@@ -13,6 +13,7 @@ struct Glitch {
   double line_height = 2;
   double horizontal_shake = 0, rgb_split = 0.1;
   double vertical_roll = 0;  ///< pictures per second
+  bool stretch = false;      ///< past the sides stands their last pixel
   std::uint32_t seed = 0, frame = 1;
   double time = 0;  ///< seconds
 };

@@ -82,9 +82,11 @@ DoubleImage flare_ghosts(const DoubleImage& iris, const LensFlare& s) {
         const double m = ghost.place * s.spacing * (1 - 0.05 * s.dispersion * (c - 1));
         sum[c] += s.ghosts * ghost.light * ghost.coat[c] * flare_light(iris, px / m, py / m, c);
       }
-      if (away > 1e-6) {
-        const double r = s.halo_radius * (1 - 0.12 * s.dispersion * (c - 1)) / away;
-        sum[c] += s.halo * flare_light(iris, px - px * r, py - py * r, c);
+      const double ring = s.halo_radius * (1 - 0.12 * s.dispersion * (c - 1));
+      const double seen = glm::smoothstep(0.4, 0.8, away / ring);
+      if (seen > 0) {
+        const double r = ring / away;
+        sum[c] += s.halo * seen * flare_light(iris, px - px * r, py - py * r, c);
       }
     }
     return sum;

@@ -162,6 +162,7 @@ DoubleImage run_glitch(const DoubleImage& source, const Inputs& inputs, const Se
                          .horizontal_shake = s.number("horizontal_shake"),
                          .rgb_split = s.number("rgb_split"),
                          .vertical_roll = s.number("vertical_roll"),
+                         .stretch = s.text("edges") == "stretch",
                          .seed = word(s, "seed"),
                          .frame = frame_of(inputs),
                          .time = inputs.time});

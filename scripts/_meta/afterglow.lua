@@ -26,7 +26,7 @@
 ---@field intensity? number|afterglow.Moving  Factor of the streaks. 0: none. 0…100, default 0.4
 ---@field tint? number[]|string|afterglow.Moving  Colour of the streaks. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.55, 0.55, 1}
 
----Exposes for middle grey by a histogram of the picture, and adapts to changes over time.
+---Exposes for middle grey by a histogram of the picture, and adapts to changes over time. Where nothing is drawn (alpha 0) nothing is metered.
 ---@class afterglow.settings.auto_exposure : afterglow.EntryKeys
 ---@field compensation? number|afterglow.Moving  Brighter or darker than middle grey, in stops. -16…16 EV, default 0
 ---@field min_ev? number|afterglow.Moving  Scenes darker than this are not brightened further. 0: an average of middle grey (0.18). -16…16 EV, default -6
@@ -93,7 +93,7 @@
 
 ---Exposure, contrast, colour filter, hue and saturation.
 ---@class afterglow.settings.color_adjustments : afterglow.EntryKeys
----@field post_exposure? number|afterglow.Moving  Brightness in stops: light times 2^EV. EV, default 0
+---@field post_exposure? number|afterglow.Moving  Brightness in stops: light times 2^EV. As with all settings here, light above 60 counts as 60. EV, default 0
 ---@field contrast? number|afterglow.Moving  Contrast around middle grey (linear 0.22), in Alexa LogC space. -100 leaves that grey alone. -100…100 %, default 0
 ---@field color_filter? number[]|string|afterglow.Moving  Light is multiplied by this; may exceed 1. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field hue_shift? number|afterglow.Moving  Turns every hue; 120 takes red to green. -180…180 degrees, default 0
@@ -240,6 +240,7 @@
 ---@field horizontal_shake? number|afterglow.Moving  How far the whole picture jumps sideways in each frame; 1: up to a tenth of it. 0…1, default 0
 ---@field rgb_split? number|afterglow.Moving  How far red and blue part; 1: up to a twenty-fifth of the picture each way. 0…1, default 0.1
 ---@field vertical_roll? number|afterglow.Moving  Speed at which the picture rolls; above 0 upwards. -30…30 pictures/s, default 0
+---@field edges? "wrap"|"stretch"|afterglow.OfTime  What comes in at the sides. wrap: what goes out at the other side. stretch: the last pixel, again and again. default "wrap"
 ---@field seed? integer|afterglow.Moving  Another number, another pattern. integer ≥ 0, default 0
 
 ---The red and orange glow around highlights on film.
@@ -295,7 +296,7 @@
 ---@field lift? number[]|string|afterglow.Moving  Colour of lift; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field lift_offset? number|afterglow.Moving  Light added everywhere; shows most in the darks. -1…1, default 0
 ---@field gamma? number[]|string|afterglow.Moving  Colour of gamma; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field gamma_offset? number|afterglow.Moving  Above 0 lightens the middle, below 0 darkens it; black stays. -1…1, default 0
+---@field gamma_offset? number|afterglow.Moving  Above 0 lightens the middle, below 0 darkens it; black and 1 stay, and light above 1 goes the other way. -1…1, default 0
 ---@field gain? number[]|string|afterglow.Moving  Colour of gain; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field gain_offset? number|afterglow.Moving  Light times 1 + this; shows most in the brights. -1…1, default 0
 
@@ -390,7 +391,7 @@
 ---@field search? integer|afterglow.Moving  How far the ends of an edge are looked for, each way. integer 1…112 px, default 32
 ---@field corner_rounding? number|afterglow.Moving  How much corners are rounded: 0 keeps them sharp. 0…100 %, default 25
 
----Tints shadows and highlights in colours of their own.
+---Tints shadows and highlights in colours of their own; white and what is brighter stays.
 ---@class afterglow.settings.split_toning : afterglow.EntryKeys
 ---@field shadows? number[]|string|afterglow.Moving  Tint of the shadows; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
 ---@field highlights? number[]|string|afterglow.Moving  Tint of the highlights; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
@@ -508,7 +509,7 @@
 
 ---@class afterglow
 ---@field anamorphic_streaks fun(settings: afterglow.settings.anamorphic_streaks): afterglow.Entry  Long horizontal flares from bright lights, as of an anamorphic lens.
----@field auto_exposure fun(settings: afterglow.settings.auto_exposure): afterglow.Entry  Exposes for middle grey by a histogram of the picture, and adapts to changes over time.
+---@field auto_exposure fun(settings: afterglow.settings.auto_exposure): afterglow.Entry  Exposes for middle grey by a histogram of the picture, and adapts to changes over time. Where nothing is drawn (alpha 0) nothing is metered.
 ---@field bloom fun(settings: afterglow.settings.bloom): afterglow.Entry  Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@field bokeh_blur fun(settings: afterglow.settings.bokeh_blur): afterglow.Entry  Blurs the picture as a lens out of focus: bright points become discs or polygons.
 ---@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow, as its source makes it: hard linear threshold, four-sample blur down and up, added to the picture. Its glow has corners; that of bloom is round.
@@ -547,7 +548,7 @@
 ---@field shadows_midtones_highlights fun(settings: afterglow.settings.shadows_midtones_highlights): afterglow.Entry  Colours and brightens shadows, midtones and highlights, each by itself.
 ---@field sharpen fun(settings: afterglow.settings.sharpen): afterglow.Entry  Contrast-adaptive sharpening of fine detail; best after tone mapping.
 ---@field smaa fun(settings: afterglow.settings.smaa): afterglow.Entry  Morphological anti-aliasing: smooth edges without blur; after tone mapping.
----@field split_toning fun(settings: afterglow.settings.split_toning): afterglow.Entry  Tints shadows and highlights in colours of their own.
+---@field split_toning fun(settings: afterglow.settings.split_toning): afterglow.Entry  Tints shadows and highlights in colours of their own; white and what is brighter stays.
 ---@field ssao fun(settings: afterglow.settings.ssao): afterglow.Entry  Soft contact shadows in corners and under things, by depth.
 ---@field taa fun(settings: afterglow.settings.taa): afterglow.Entry  Temporal anti-aliasing: steadies noise and shimmering edges over frames, by motion vectors.
 ---@field tone_mapping fun(settings: afterglow.settings.tone_mapping): afterglow.Entry  Brings scene-linear light into display range.

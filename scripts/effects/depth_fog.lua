@@ -52,12 +52,17 @@ return fx.effect {
       scattered = glow.of(g, source, g.length_scale, glow.fog(source, g.length_scale, 0.5 * s.scattering_radius * source.height), function(image) return image end)
     end
     local function held(x) return math.max(-1e30, math.min(x, 1e30)) end
-    return g:pass {
-      shader = "depth_fog/fog", source = source, depth = g:input("depth"), scattered = scattered, blur = s.scattering > 0 or s.ambient > 0, name = "final",
+    local view = { half * aspect, half }
+    local shares = g:pass {
+      shader = "depth_fog/shares", source = source, depth = g:input("depth"), channels = 2, name = "shares",
       device_input = s.depth_space == "device", reversed_z = s.reversed_z, inverse_clip = { 1 / s.near, 1 / s.far },
       -- The fog's density at the camera.
-      density = held(s.density * math.exp(math.max(-80, math.min(-s.height_falloff * s.camera_height, 60)))), start = s.start, fog = s.color, most = s.max_opacity, sky = s.sky,
-      scattering = s.scattering, ambient = s.ambient, layered = s.height_falloff > 0, falloff = s.height_falloff, up = { math.cos(pitch), math.sin(pitch) }, view = { half * aspect, half },
+      density = held(s.density * math.exp(math.max(-80, math.min(-s.height_falloff * s.camera_height, 60)))), start = s.start, most = s.max_opacity, sky = s.sky,
+      layered = s.height_falloff > 0, falloff = s.height_falloff, up = { math.cos(pitch), math.sin(pitch) }, view = view,
+    }
+    return g:pass {
+      shader = "depth_fog/fog", source = source, shares = shares, scattered = scattered, blur = s.scattering > 0 or s.ambient > 0, name = "final",
+      fog = s.color, scattering = s.scattering, ambient = s.ambient, view = view,
       sunny = s.sun_color[1] > 0 or s.sun_color[2] > 0 or s.sun_color[3] > 0, sun_color = s.sun_color, sun = { sun_x / length, sun_y / length, 1 / length }, focus = s.sun_focus,
     }
   end,

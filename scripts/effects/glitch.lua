@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 -- Glitch: an analogue signal that has come loose. Jitter of scan lines and shaking as in K. Takahashi's KinoGlitch for Unity (AnalogGlitch),
--- with its scales; random numbers come from the frame and the seed alone, and shifts are whole pixels that wrap around.
+-- with its scales; random numbers come from the frame and the seed alone, and shifts are whole pixels.
 local fx = require "afterglow"
 
 return fx.effect {
@@ -13,6 +13,8 @@ return fx.effect {
     horizontal_shake = fx.float { min = 0, max = 1, default = 0, doc = "How far the whole picture jumps sideways in each frame; 1: up to a tenth of it." },
     rgb_split = fx.float { min = 0, max = 1, default = 0.1, doc = "How far red and blue part; 1: up to a twenty-fifth of the picture each way." },
     vertical_roll = fx.float { min = -30, max = 30, default = 0, unit = "pictures/s", doc = "Speed at which the picture rolls; above 0 upwards." },
+    edges = fx.enum { "wrap", "stretch", default = "wrap",
+                      doc = "What comes in at the sides. wrap: what goes out at the other side. stretch: the last pixel, again and again." },
     seed = fx.int { min = 0, default = 0, doc = "Another number, another pattern." },
   },
   active = function(s)
@@ -26,6 +28,7 @@ return fx.effect {
       quiet = math.max(1 - 1.2 * jitter, 0), jump = jitter > 0 and 0.002 + 0.05 * jitter ^ 3 or 0,
       shake = 0.2 * s.horizontal_shake, split = 0.04 * s.rgb_split,
       roll = math.floor(source.height * (s.vertical_roll * g.time % 1)) % source.height,
+      stretch = s.edges == "stretch",
     }
   end,
 }

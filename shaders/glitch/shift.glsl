@@ -10,12 +10,13 @@ uniform float jump;   // the rest in widths of the picture: how far a line jumps
 uniform float shake;  // the picture,
 uniform float split;  // red and blue
 uniform int roll;     // rows
+uniform bool stretch;  // past the sides stands their last pixel; otherwise what lies at the other side
 
 int pixels(float widths) { return int(floor(widths * float(target_size().x) + 0.5)); }
 
 float channel(ivec2 pixel, int shift, int which) {
-  int width = target_size().x;
-  return fetch(source, ivec2((pixel.x + shift + width) % width, pixel.y))[which];
+  int width = target_size().x, x = pixel.x + shift;
+  return fetch(source, ivec2(stretch ? clamp(x, 0, width - 1) : (x + width) % width, pixel.y))[which];
 }
 
 vec4 sample_at(ivec2 pixel) {

@@ -33,9 +33,11 @@ vec4 sample_at(ivec2 pixel) {
         float m = kPlaces[i] * spacing * (1.0 - 0.05 * dispersion * wave);
         sum[c] += ghosts * kLight[i] * kCoats[i][c] * light(p / m, size, c);
       }
-    if (halo > 0.0 && away > 1e-6) {
+    if (halo > 0.0) {
       float r = ring * (1.0 - 0.12 * dispersion * wave);
-      sum[c] += halo * light(p - p * (r / away), size, c);
+      // Towards the middle all directions meet and light would be drawn out into wedges.
+      float seen = smoothstep(0.4, 0.8, away / r);
+      if (seen > 0.0) sum[c] += halo * seen * light(p - p * (r / away), size, c);
     }
   }
   return vec4(min(sum, vec3(kMaxLight)), 1.0);

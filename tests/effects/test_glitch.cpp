@@ -12,8 +12,9 @@ using namespace reference;
 
 EffectCase broken(const Glitch& v) {
   return {fmt::format("fx.glitch {{ scan_line_jitter = {}, line_height = {}, horizontal_shake = {}, rgb_split = {}, "
-                      "vertical_roll = {}, seed = {} }}",
-                      v.scan_line_jitter, v.line_height, v.horizontal_shake, v.rgb_split, v.vertical_roll, v.seed),
+                      "vertical_roll = {}, edges = \"{}\", seed = {} }}",
+                      v.scan_line_jitter, v.line_height, v.horizontal_shake, v.rgb_split, v.vertical_roll,
+                      v.stretch ? "stretch" : "wrap", v.seed),
           [=](const Scene& s) {
             auto settings = v;
             settings.frame = static_cast<std::uint32_t>(s.frame);
@@ -24,8 +25,10 @@ EffectCase broken(const Glitch& v) {
 
 TEST_F(Effects, GlitchAgreesToTheBit) {
   const std::vector<EffectCase> cases{
-      broken({}), broken({.scan_line_jitter = 1, .line_height = 1, .horizontal_shake = 1, .rgb_split = 1, .seed = 9}),
+      broken({}),
+      broken({.scan_line_jitter = 1, .line_height = 1, .horizontal_shake = 1, .rgb_split = 1, .seed = 9}),
       broken({.scan_line_jitter = 0, .rgb_split = 0, .vertical_roll = 1.7}),
+      broken({.scan_line_jitter = 1, .horizontal_shake = 1, .rgb_split = 1, .vertical_roll = 0.3, .stretch = true}),
       broken({.scan_line_jitter = 0.6, .line_height = 7, .vertical_roll = -0.9}),
       broken({.scan_line_jitter = 0.96592265, .line_height = 12.414532})};
   for (const Size size : kSizes)

@@ -184,6 +184,20 @@ TEST_F(Effects, DepthFogAgrees) {
   expect_skipped("fx.depth_fog { max_opacity = 0 }", "max_opacity is 0");
 }
 
+TEST_F(Effects, FogOfHalfCoveredPixelsIsThatOfTheirLikes) {
+  // A wire that covers half of two rows: depth says wire and sky in turns.
+  Scene scene{"wire", DoubleImage(64, 64, Rgba(0.2, 0.2, 0.2, 1)), DoubleImage(64, 64, Rgba(1e10, 0, 0, 1)), {}};
+  for (int x = 0; x < 64; ++x) {
+    for (int y : {31, 32}) scene.source.at(x, y) = Rgba(0.1, 0.1, 0.1, 1);
+    scene.depth->at(x, 31 + x % 2) = Rgba(20, 0, 0, 1);
+  }
+  const Made made = run_stack(
+      "fx.depth_fog { density = 0.05, scattering = 0, ambient = 0, sky = 0, color = { 1, 1, 1 } }", scene, Way::plain);
+  const auto at = [&](int x, int y) { return made.result[4 * static_cast<std::size_t>(y * 64 + x)]; };
+  EXPECT_NEAR(at(32, 31), at(33, 31), 1e-3);  // 0.45 apart by their own depths
+  EXPECT_NEAR(at(32, 20), 0.2, 1e-6);
+}
+
 TEST_F(Effects, FogFollowsBeerAndLambert) {
   Scene scene{"wall", DoubleImage(65, 65), DoubleImage(65, 65, Rgba(10, 0, 0, 1)), {}};
   const Made made = run_stack(

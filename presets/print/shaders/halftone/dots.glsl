@@ -10,6 +10,8 @@ uniform vec3 ink;
 uniform vec3 paper;
 uniform float tint;
 
+const float kLeast = 1.0;  // pixels
+
 vec2 turn(vec2 p, vec2 by) { return vec2(p.x * by.x - p.y * by.y, p.x * by.y + p.y * by.x); }
 
 // Radius of a dot that covers such a share of its cell, in cells. Up to π/4 it lies within the cell; then it is cut at the
@@ -28,9 +30,10 @@ vec4 sample_at(ivec2 pixel) {
   vec3 seen = fetch_linear(source, turn(centre, vec2(rotation.x, -rotation.y))).rgb;
 
   float radius = cell * radius_of(1.0 - clamp(luminance(seen), 0.0, 1.0));
-  // A soft edge of a pixel, less for dots that are smaller; it adds edge²/12 to radius², which is taken off before.
-  float edge = max(min(1.0, 1.7320508 * radius), 1e-4);
-  float inked = clamp((sqrt(max(radius * radius - edge * edge / 12.0, 0.0)) - length(offset)) / edge + 0.5, 0.0, 1.0);
+  // A soft edge of a pixel; it adds 1/12 to radius², which is taken off before. Dots that pixels would meet or miss, which beats with their
+  // grid, are drawn at kLeast in ink that is as much paler.
+  float drawn = max(radius, kLeast);
+  float inked = clamp(sqrt(drawn * drawn - 1.0 / 12.0) - length(offset) + 0.5, 0.0, 1.0) * (radius * radius) / (drawn * drawn);
   // Cells of less than four pixels, as in a preview, turn into their mean: two pixels show no grid.
   inked = mix(1.0 - clamp(luminance(here.rgb), 0.0, 1.0), inked, clamp(0.5 * cell - 1.0, 0.0, 1.0));
 
