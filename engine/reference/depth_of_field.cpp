@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "reference/edge_pixels.h"
 #include "reference/lens.h"
 
 namespace afterglow::reference {
@@ -213,6 +214,34 @@ Rgba at_corners(const DoubleImage& small, int x, int y, int factor) {
          (corner(left, top + 1) * (1 - fx) + corner(left + 1, top + 1) * fx) * fy;
 }
 
+/// What stands for a pixel that holds light of what is blurred in front of it: its neighbours away from the edge, if
+/// their circles are like its own.
+Rgb behind_edge(const DoubleImage& source, const DoubleImage& circles, int x, int y) {
+  const double circle = circles.at(x, y).r;
+  const auto before = [&](int dx, int dy) {
+    const double there = circles.clamped(x + dx, y + dy).r;
+    return glm::clamp(glm::min(-there, circle - there) - 0.5, 0.0, 1.0);
+  };
+  const Rgb color(source.at(x, y));
+  Point away(0);
+  double edge = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      away -= before(dx, dy) * Point(dx, dy);
+      edge = glm::max(edge, before(dx, dy));
+    }
+  Rgb sum = 1e-3 * color;
+  double weights = 1e-3;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const double other = circles.clamped(x + dx, y + dy).r - circle;
+      const double weight = away_from(away, {double(dx), double(dy)}) * (1 - before(dx, dy)) / (1 + other * other);
+      sum += weight * Rgb(source.clamped(x + dx, y + dy));
+      weights += weight;
+    }
+  return color * (1 - edge) + sum / weights * edge;
+}
+
 }  // namespace
 
 DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& s) {
@@ -236,7 +265,8 @@ DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, 
   return generate(source.size(), [&](int x, int y) {
     const Rgba color = source.at(x, y), behind = at_corners(far, x, y, factor), front = at_corners(near, x, y, factor);
     const double circle = circles.at(x, y).r, blur = blurred_by(circle, factor);
-    const Rgb base = Rgb(color) * (1 - blur) + Rgb(behind) / behind.a * blur;
+    const Rgb sharp = front.a > 0 ? behind_edge(source, circles, x, y) : Rgb(color);
+    const Rgb base = sharp * (1 - blur) + Rgb(behind) / behind.a * blur;
     const double seen = circle < 0 ? 1 + blur * (glm::min(16 * behind.a, 1.0) - 1) : 1;
     const double rest = glm::max(1 - front.a, 0.0) * seen;
     return Rgba((base * rest + Rgb(front)) / (front.a + rest), color.a);

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "reference/edge_pixels.h"
+
 namespace afterglow::reference {
 namespace {
 
@@ -42,49 +44,108 @@ double unlike(const Way& a, const Way& b) {
   return glm::max(glm::min(glm::dot(a - b, a - b), glm::dot(a + b, a + b)), 1e-6);
 }
 
-/// What crosses one pixel.
-struct Crossing {
+/// Ways of all pixels, and how near they are.
+struct Moving {
   const DoubleImage &source, &ways, &nearness;
   double softness = 1;
   int samples = 0;
+
+  Way way(int x, int y) const { return way_of(ways.clamped(x, y)); }
+  /// −1…1: how much (px, py) lies in front of (x, y); below 0: behind it.
+  double nearer(int px, int py, int x, int y) const {
+    return glm::clamp((nearness.clamped(px, py).r - nearness.at(x, y).r) / softness, -1.0, 1.0);
+  }
+};
+
+/// How much the second moves otherwise than the first does, in parts of the first's way.
+double differs(const Way& first, const Way& second) {
+  return glm::min(unlike(first, second) / glm::max(glm::dot(first, first), 0.25), 1.0);
+}
+
+/// What stands for a pixel that holds light of what passes in front of it: its neighbours away from the edge.
+Rgb behind_edge(const Moving& m, int x, int y) {
+  const auto before = [&](int dx, int dy) {
+    const Way way = m.way(x + dx, y + dy);
+    return glm::max(m.nearer(x + dx, y + dy, x, y), 0.0) * glm::clamp(longer(way) - 0.5, 0.0, 1.0) *
+           differs(way, m.way(x, y));
+  };
+  const Rgb color(m.source.at(x, y));
+  Way away(0);
+  double edge = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      away -= before(dx, dy) * Way(dx, dy);
+      edge = glm::max(edge, before(dx, dy));
+    }
+  Rgb sum = 1e-3 * color;
+  double weights = 1e-3;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const double weight = away_from(away, {double(dx), double(dy)}) * (1 - before(dx, dy));
+      sum += weight * Rgb(m.source.clamped(x + dx, y + dy));
+      weights += weight;
+    }
+  return color * (1 - edge) + sum / weights * edge;
+}
+
+/// What crosses one pixel.
+struct Crossing {
+  const Moving& m;
   int x = 0, y = 0;
   Way own{}, around{};  // the pixel's way, and the longest around
   bool two = false;     // they differ
-  Rgb behind{0}, front{0};
-  double behind_weight = 0, front_share = 0;
+  Rgb along{0}, front{0}, past{0};
+  double along_weight = 0, front_share = 0, past_weight = 0, past_share = 0;
 
-  void count(int px, int py, double share, double i, const Way& step, bool first, double steps) {
-    const Way read = way_of(ways.clamped(px, py));
-    const double in_front = glm::clamp((nearness.clamped(px, py).r - nearness.at(x, y).r) / softness, 0.0, 1.0);
-    const double along = std::abs(glm::dot(read, step)) / glm::dot(step, step);
-    double passes = share * in_front * covered_by(i, along) / (2 * glm::max(along, 0.5));
+  /// Returns how much of it is behind the pixel and moves otherwise. `clear`: 1, and half as much after each such read.
+  double count(int px, int py, double share, double i, const Way& step, bool first, double steps, double clear) {
+    const Way read = m.way(px, py);
+    const double nearer = m.nearer(px, py, x, y), in_front = glm::max(nearer, 0.0);
+    const double to_end = std::abs(glm::dot(read, step)) / glm::dot(step, step);
+    double passes = share * in_front * covered_by(i, to_end) / (2 * glm::max(to_end, 0.5));
     if (two) {
       const double to_own = unlike(read, own), to_around = unlike(read, around);
       passes *= (first ? to_around : to_own) / (to_own + to_around);
     }
     const double stays = first ? share * covered_by(i, steps) * (1 - in_front) : 0;
-    const Rgb color(source.clamped(px, py));
+    const double leaves = glm::max(-nearer, 0.0) * differs(own, read);
+    const double weight = stays * leaves * (clear - clear * clear + 1e-3) / (i * i);
+    const Rgb color(m.source.clamped(px, py));
     front += passes * color;
     front_share += passes;
-    behind += stays * color;
-    behind_weight += stays;
+    along += stays * (1 - leaves) * color;
+    along_weight += stays * (1 - leaves);
+    past += weight * color;
+    past_weight += weight;
+    past_share += stays * leaves;
+    return leaves * share;
   }
 
   void follow(const Way& way, bool first) {
-    const double length = longer(way), apart = glm::max(1.0, std::ceil((2 * length - 0.3) / samples));
+    const double length = longer(way), apart = glm::max(1.0, std::ceil((2 * length - 0.3) / m.samples));
     const Way step = way * (apart / length);
     const bool flat = std::abs(way.x) >= std::abs(way.y);
-    for (int i = 1; i <= static_cast<int>(std::floor(length / apart + 0.5)); ++i)
-      for (const int side : {-1, 1}) {
+    for (const int side : {-1, 1}) {
+      double clear = 1;
+      for (int i = 1; i <= static_cast<int>(std::floor(length / apart + 0.5)); ++i) {
         const Way at = step * double(side * i);
-        const int along = static_cast<int>(std::lround(flat ? at.x : at.y));
+        const int to = static_cast<int>(std::lround(flat ? at.x : at.y));
         const double aside = flat ? at.y : at.x;
         const int low = static_cast<int>(std::floor(aside));
-        for (const int by : {0, 1}) {
-          const double share = by == 1 ? aside - low : 1 - (aside - low);
-          count(x + (flat ? along : low + by), y + (flat ? low + by : along), share, i, step, first, length / apart);
-        }
+        double leaves = 0;
+        for (const int by : {0, 1})
+          leaves += count(x + (flat ? to : low + by), y + (flat ? low + by : to),
+                          by == 1 ? aside - low : 1 - (aside - low), i, step, first, length / apart, clear);
+        clear *= 1 - leaves / 2;
       }
+    }
+  }
+
+  Rgb result() const {
+    Rgb behind = along + (front_share > 0 ? behind_edge(m, x, y) : Rgb(m.source.at(x, y)));
+    if (past_share > 0) behind += past * (past_share / past_weight);
+    return behind * (glm::max(1 - front_share, 0.0) / (1 + along_weight + past_share)) +
+           front / glm::max(front_share, 1.0);
   }
 };
 
@@ -96,6 +157,7 @@ DoubleImage motion_blur(const DoubleImage& source, const DoubleImage& motion, co
   const DoubleImage nearness = generate(source.size(), [&](int x, int y) {
     return Rgba(depth ? -depth->at(x, y).r : glm::length(way_of(ways.at(x, y))));
   });
+  const Moving moving{source, ways, nearness, depth ? s.depth_softness : 1, s.samples};
   const int tile = static_cast<int>(std::ceil(s.max_radius));
   const Size tiles{(source.width + tile - 1) / tile, (source.height + tile - 1) / tile};
   const DoubleImage by_tile = generate(tiles, [&](int x, int y) {
@@ -107,16 +169,11 @@ DoubleImage motion_blur(const DoubleImage& source, const DoubleImage& motion, co
     const Way around = way_of(longest_in(by_tile, tx - 1, ty - 1, tx + 2, ty + 2));
     const Rgba color = source.at(x, y);
     if (longer(around) <= 0.5) return color;
-    Crossing pixel{source, ways, nearness, depth ? s.depth_softness : 1, s.samples, x, y, way_of(ways.at(x, y)),
-                   around};
+    Crossing pixel{moving, x, y, way_of(ways.at(x, y)), around};
     pixel.two = unlike(pixel.around, pixel.own) > 0.25;
-    pixel.behind = Rgb(color);
-    pixel.behind_weight = 1;
     if (longer(pixel.own) > 0.5) pixel.follow(pixel.own, true);
     if (pixel.two) pixel.follow(around, false);
-    return Rgba(pixel.behind * (glm::max(1 - pixel.front_share, 0.0) / pixel.behind_weight) +
-                    pixel.front / glm::max(pixel.front_share, 1.0),
-                color.a);
+    return Rgba(pixel.result(), color.a);
   });
 }
 

@@ -3,6 +3,7 @@
 // otherwise comes along the longest way around. A way is read once for each pixel of its longer axis, between the two pixels there, and each
 // read counts for the part of its length that the way covers: so a way of half a pixel more blurs by half a pixel more.
 #include "lib/color.glsl"
+#include "lib/edge_pixels.glsl"
 
 layout(constant_id = 0) const bool sparse = false;  // ways may be longer than `samples` reads
 
@@ -47,11 +48,20 @@ Way way_along(vec2 way, bool follows) {
   return Way(step, step / dot(step, step), flat_way ? step.y : step.x, steps, along, across, follows ? int(floor(steps + 0.5)) : 0);
 }
 
-/// Adds one pixel, `i` steps along the way, to what is not in front (colour and weight) and to what is (colour and share of the time).
-/// `share`: how much of it lies on the way; `inside`: how much of its step the way covers, below 0 on a way that is not the pixel's own.
-void count(inout vec4 behind, inout vec4 front, ivec2 at, float share, float i, float inside, vec2 per_step, vec4 own, vec2 other, bool two) {
+/// Sums of colours and weights.
+struct Sums {
+  vec4 behind;  // what is not in front and comes along
+  vec4 front;   // what is in front, by the share of the time
+  vec4 past;    // what is seen where the pixel itself has left
+  float gone;   // how much that counts beside `behind`
+};
+
+/// Adds one pixel, `i` steps along the way. `share`: how much of it lies on the way; `inside`: how much of its step the way covers, below 0
+/// on a way that is not the pixel's own; `counts`: weight in what is seen where the pixel in the middle has left, `stirs`: 1 over the square of its
+/// way. Returns how much it leaves this one behind.
+float count(inout Sums sums, float counts, float stirs, ivec2 at, float share, float i, float inside, vec2 per_step, vec4 own, vec2 other, bool two) {
   vec4 read = fetch(source, at);
-  float in_front = clamp((read.z - own.z) * hardness, 0.0, 1.0);
+  float nearer = clamp((read.z - own.z) * hardness, -1.0, 1.0), in_front = max(nearer, 0.0);
   // What is in front passes over this pixel for as long as its own motion along this way says. Of two ways it belongs to the one that it is more like.
   float steps = abs(dot(read.xy, per_step));
   float to_own = unlike(read.xy, own.xy), to_other = unlike(read.xy, other);
@@ -59,8 +69,40 @@ void count(inout vec4 behind, inout vec4 front, ivec2 at, float share, float i, 
   float passes = share * in_front * covered(i, steps) * of_this / (2.0 * max(steps, 0.5) * of_both);
   float stays = share * max(inside, 0.0) * (1.0 - in_front);
   vec3 color = fetch(picture, at).rgb;
-  front += passes * vec4(color, 1.0);
-  behind += stays * vec4(color, 1.0);
+  sums.front += passes * vec4(color, 1.0);
+  // What is behind and does not come along is seen here for as long, but not from there: bright lights would be smeared into what hides
+  // them. So the nearest of it counts; not the very first, as edge pixels hold light of what is in front.
+  float leaves = max(-nearer, 0.0) * min(to_own * stirs, 1.0), gone = stays * leaves;
+  sums.behind += (stays - gone) * vec4(color, 1.0);
+  sums.past += gone * counts * vec4(color, 1.0);
+  sums.gone += gone;
+  return leaves * share;
+}
+
+/// How much something in front passes over its neighbour.
+float before(vec4 read, vec4 own) {
+  float moves = clamp(longer(read.xy) - 0.5, 0.0, 1.0) * min(unlike(read.xy, own.xy) / max(dot(read.xy, read.xy), 0.25), 1.0);
+  return clamp((read.z - own.z) * hardness, 0.0, 1.0) * moves;
+}
+
+/// An edge pixel holds light of what is in front, but stays as what is behind: its neighbours away from the edge stand for it.
+vec3 behind_edge(vec3 color, ivec2 pixel, vec4 own) {
+  vec2 away = vec2(0.0);
+  float edge = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      float hides = before(fetch(source, pixel + ivec2(x, y)), own);
+      away -= hides * vec2(x, y);
+      edge = max(edge, hides);
+    }
+  if (edge <= 0.0) return color;
+  vec4 sum = vec4(color, 1.0) * 1e-3;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      ivec2 at = pixel + ivec2(x, y);
+      sum += away_from(away, vec2(x, y)) * (1.0 - before(fetch(source, at), own)) * vec4(fetch(picture, at).rgb, 1.0);
+    }
+  return mix(color, sum.rgb / sum.a, edge);
 }
 
 // Nothing around moves by a pixel.
@@ -73,7 +115,10 @@ vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(picture, pixel);
   vec2 way = around(pixel);
   vec4 own = fetch(source, pixel);
-  vec4 behind = vec4(color.rgb, 1.0), front = vec4(0.0);
+  Sums sums = Sums(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), 0.0);
+  // Halved by each pixel on a side that this one leaves behind.
+  vec2 clear = vec2(1.0);
+  float stirs = 1.0 / max(dot(own.xy, own.xy), 0.25);
   bool two = unlike(way, own.xy) > 0.25;
   // Its own way first, on which what is not in front counts too; in one loop, as a group of pixels goes through each loop at least once.
   Way first = way_along(own.xy, longer(own.xy) > 0.5), second = way_along(way, two);
@@ -87,12 +132,16 @@ vec4 sample_at(ivec2 pixel) {
       float inside = is_first ? covered(float(i), first.steps) : -1.0;
       float aside = float(i) * (is_first ? first.slope : second.slope), whole = floor(aside), rest = aside - whole;
       ivec2 to = i * along + int(whole) * across;
-      count(behind, front, pixel + to, 1.0 - rest, float(i), inside, per_step, own, way, two);
-      count(behind, front, pixel + to + across, rest, float(i), inside, per_step, own, way, two);
-      count(behind, front, pixel - to, 1.0 - rest, float(i), inside, per_step, own, way, two);
-      count(behind, front, pixel - to - across, rest, float(i), inside, per_step, own, way, two);
+      vec2 counts = (clear - clear * clear + 1e-3) / float(i * i), leaves;
+      leaves.x = count(sums, counts.x, stirs, pixel + to, 1.0 - rest, float(i), inside, per_step, own, way, two);
+      leaves.x += count(sums, counts.x, stirs, pixel + to + across, rest, float(i), inside, per_step, own, way, two);
+      leaves.y = count(sums, counts.y, stirs, pixel - to, 1.0 - rest, float(i), inside, per_step, own, way, two);
+      leaves.y += count(sums, counts.y, stirs, pixel - to - across, rest, float(i), inside, per_step, own, way, two);
+      clear -= 0.5 * leaves * clear;
       if (k + 1 == reads) break;
     }
-  vec3 result = behind.rgb * (max(1.0 - front.a, 0.0) / behind.a) + front.rgb / max(front.a, 1.0);
+  vec4 behind = sums.behind + vec4(sums.front.a > 0.0 ? behind_edge(color.rgb, pixel, own) : color.rgb, sums.gone);
+  if (sums.gone > 0.0) behind.rgb += sums.past.rgb * (sums.gone / max(sums.past.a, 1e-20));
+  vec3 result = behind.rgb * (max(1.0 - sums.front.a, 0.0) / behind.a) + sums.front.rgb / max(sums.front.a, 1.0);
   return vec4(result, color.a);
 }

@@ -80,6 +80,19 @@ TEST_F(Effects, BlurredThingsInFrontHaveSoftEdges) {
   EXPECT_EQ(red(52), 0);
 }
 
+TEST_F(Effects, EdgePixelsLeaveNoContourInBlurredEdges) {
+  // As renderers draw them, anti-aliased edges have the colour of both, but the depth of one.
+  Scene scene = halves(0.3, 2);
+  const auto expected = run_stack(kWide, scene, Way::plain).result;
+  for (int y = 0; y < 48; ++y) scene.source.at(40, y) = Rgba(y % 3 == 0 ? 0.9 : 0.4, y % 3 == 0 ? 0.1 : 0.6, 0, 1);
+  const auto made = run_stack(kWide, scene, Way::plain).result;
+  for (int y = 4; y < 44; ++y)
+    for (int x = 0; x < 80; ++x) {
+      const auto at = 4 * static_cast<std::size_t>(80 * y + x);
+      EXPECT_NEAR(made[at], expected[at], 2e-3) << x << " " << y;
+    }
+}
+
 TEST_F(Effects, DepthOfFieldIsSkippedWithoutDepth) {
   auto scene = random_scene({16, 16}, 66);
   scene.depth.reset();

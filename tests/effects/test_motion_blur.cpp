@@ -110,6 +110,29 @@ TEST_F(Effects, WhatMovesBehindSomethingSharpDoesNotCoverIt) {
   for (int x = 40; x < 56; ++x) EXPECT_GT(made[4 * static_cast<std::size_t>(96 * 16 + x)], 0.97F) << x;
 }
 
+TEST_F(Effects, LightsBehindAreNotSmearedIntoWhatMovesBeforeThem) {
+  // A dark bar passes; a bright light stands still behind it, some pixels away from its edge.
+  for (const bool with_depth : {true, false}) {
+    Scene scene = bar(24);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 96; ++x)
+        scene.source.at(x, y) = Rgba(Rgb(x >= 32 && x < 35 ? 50 : x >= 40 && x < 56 ? 0 : 1), 1);
+    if (!with_depth) scene.depth.reset();
+    const auto made = run_stack("fx.motion_blur { shutter_angle = 360 }", scene, Way::plain).result;
+    for (int x = 39; x < 56; ++x) EXPECT_LT(made[4 * static_cast<std::size_t>(96 * 16 + x)], 1.2) << x << with_depth;
+  }
+}
+
+TEST_F(Effects, EdgePixelsLeaveNoContourInWhatMoves) {
+  // Anti-aliased edges have the colour of both, but stand still.
+  Scene scene = bar(16);
+  const auto expected = run_stack("fx.motion_blur { shutter_angle = 360 }", scene, Way::plain).result;
+  for (int y = 0; y < 32; ++y)
+    for (const int x : {39, 56}) scene.source.at(x, y) = Rgba(Rgb(y % 2 == 0 ? 0.5 : 0.9), 1);
+  const auto made = run_stack("fx.motion_blur { shutter_angle = 360 }", scene, Way::plain).result;
+  for (std::size_t i = 0; i < made.size(); ++i) EXPECT_NEAR(made[i], expected[i], 0.03) << i / 4 % 96;
+}
+
 TEST_F(Effects, MotionBlurIsSkippedWithoutMotion) {
   const Made made = run_stack("fx.motion_blur {}", random_scene({16, 16}, 93), Way::plain);
   EXPECT_FALSE(made.ran());
