@@ -78,7 +78,7 @@ TEST(OutputSpace, CineonIsKodaks) {
   EXPECT_EQ(find_output_space("").value(), nullptr);
   EXPECT_EQ(find_output_space("logc").error().kind, ErrorKind::usage);
   EXPECT_TRUE(
-      find_output_space("logc").error().text().starts_with("error: 'logc' is no output space; allowed: acescct"));
+      find_output_space("logc").error().text().starts_with("error: 'logc' is no output space; allowed: aces2065_1"));
 }
 
 }  // namespace
