@@ -36,11 +36,15 @@ glm::dmat3 adapted(const glm::dvec2& from, const glm::dvec2& to) {
 }
 
 Primaries primaries_of(const std::string& name) {
-  if (name == "acescct") return {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
+  if (name == "aces2065_1") return {{0.7347, 0.2653}, {0, 1}, {0.0001, -0.0770}, {0.32168, 0.33767}};
+  if (name == "lin_p3d65") return {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
+  if (name == "acescct" || name == "acescg")
+    return {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
   if (name == "logc3") return {{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
   if (name == "logc4") return {{0.7347, 0.2653}, {0.1424, 0.8576}, {0.0991, -0.0308}, kD65};
   if (name == "slog3") return {{0.766, 0.275}, {0.225, 0.800}, {0.089, -0.087}, kD65};
-  if (name == "pq" || name == "hlg") return {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
+  if (name == "pq" || name == "hlg" || name == "lin_rec2020")
+    return {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
   return kOwn;
 }
 
@@ -163,11 +167,22 @@ struct Transfer {
   double (*to_light)(double);
   double (*from_light)(double);
 };
-constexpr Transfer kTransfers[] = {
-    {"acescct", acescct_light, acescct}, {"cineon", cineon_light, cineon}, {"gamma22", gamma22_light, gamma22},
-    {"gamma24", gamma24_light, gamma24}, {"hlg", hlg_light, hlg},          {"linear", as_is, as_is},
-    {"logc3", logc3_light, logc3},       {"logc4", logc4_light, logc4},    {"pq", pq_light, pq},
-    {"rec709", rec709_light, rec709},    {"slog3", slog3_light, slog3},    {"srgb", srgb_to_linear, linear_to_srgb}};
+constexpr Transfer kTransfers[] = {{"aces2065_1", as_is, as_is},
+                                   {"acescg", as_is, as_is},
+                                   {"lin_p3d65", as_is, as_is},
+                                   {"lin_rec2020", as_is, as_is},
+                                   {"acescct", acescct_light, acescct},
+                                   {"cineon", cineon_light, cineon},
+                                   {"gamma22", gamma22_light, gamma22},
+                                   {"gamma24", gamma24_light, gamma24},
+                                   {"hlg", hlg_light, hlg},
+                                   {"linear", as_is, as_is},
+                                   {"logc3", logc3_light, logc3},
+                                   {"logc4", logc4_light, logc4},
+                                   {"pq", pq_light, pq},
+                                   {"rec709", rec709_light, rec709},
+                                   {"slog3", slog3_light, slog3},
+                                   {"srgb", srgb_to_linear, linear_to_srgb}};
 
 const Transfer& transfer(const std::string& name) {
   for (const auto& one : kTransfers)
@@ -181,6 +196,15 @@ const std::vector<std::string>& transfer_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const auto& one : kTransfers) all.emplace_back(one.name);
+    return all;
+  }();
+  return names;
+}
+
+const std::vector<std::string>& table_spaces() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = transfer_names();
+    std::erase_if(all, [](const std::string& name) { return transfer(name).to_light == as_is && name != "linear"; });
     return all;
   }();
   return names;

@@ -10,8 +10,10 @@
 
 namespace afterglow::reference {
 
-/// "acescct", "gamma22", "gamma24", "hlg", "linear", "logc3", "logc4", "pq", "slog3", "srgb".
+/// Names of all input spaces: "acescct", "acescg", …
 const std::vector<std::string>& transfer_names();
+/// Those that look-up tables are made for: all but linear light of other primaries.
+const std::vector<std::string>& table_spaces();
 
 /// Stored value to light, 1 a white that diffuses. `name` is one of the above.
 double transfer_to_light(const std::string& name, double stored);

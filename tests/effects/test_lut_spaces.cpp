@@ -105,7 +105,7 @@ Scene colours_of(double low, double high, bool logarithmic) {
 TEST_F(Effects, LutSpacesAreThoseOfTheOracle) {
   write_plain_tables();
   const Scene light = colours_of(-14, 5, true), codes = colours_of(0.02, 0.98, false);
-  for (const auto& name : transfer_names()) {
+  for (const auto& name : table_spaces()) {
     DoubleImage expected = light.source;
     for (auto& p : expected.pixels) p = Rgba(rec709_to_transfer(name, Rgb(p)), 1);
     for (const Way way : {Way::fused}) {
@@ -129,7 +129,7 @@ TEST_F(Effects, LutSpacesAreThoseOfTheOracle) {
 TEST_F(Effects, LutSpacesGoThereAndBack) {
   write_plain_tables();
   const Scene light = colours_of(-10, 1.5, true);
-  for (const auto& name : transfer_names()) {
+  for (const auto& name : table_spaces()) {
     const Made made = run_stack(through(name, "same"), light, Way::fused);
     for (std::size_t i = 0; i < light.source.pixels.size(); ++i) {
       const Rgb wanted(light.source.pixels[i]);
@@ -149,7 +149,7 @@ TEST_F(Effects, LutSpacesRiseAndStayFiniteAtTheirEnds) {
     greys.source.at(x, 1) = Rgba(Rgb((x % 2 ? 1 : -1) * std::exp2(-30 + x * 2.0)), 1);  // up to 1e29
   }
   greys.source = in_floats(greys.source);
-  for (const auto& name : transfer_names()) {
+  for (const auto& name : table_spaces()) {
     for (const char* output : {"linear", "same"}) {
       const Made made = run_stack(through(name, output), greys, Way::fused);
       EXPECT_TRUE(all_finite(made.result)) << name;
