@@ -20,6 +20,7 @@ bool targa_colors_exist(std::span<const unsigned char> bytes, bool packed) {
   const std::uint32_t first = little_endian(&bytes[3], 2), colors = little_endian(&bytes[5], 2);
   const std::size_t pixel = (bytes[16] + 7u) / 8;
   const std::uint64_t pixels = std::uint64_t{little_endian(&bytes[12], 2)} * little_endian(&bytes[14], 2);
+  if (pixel < 1 || pixel > 4) return false;  // of none it would never come to an end
   std::size_t at = 18u + bytes[0] + std::size_t{colors} * ((bytes[7] + 7u) / 8);
   const auto exists = [&] {
     const std::uint64_t number = std::uint64_t{little_endian(&bytes[at], pixel)} + first;

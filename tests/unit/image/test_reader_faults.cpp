@@ -85,6 +85,8 @@ TEST_F(ReaderFaults, TargaColoursBeyondTheTable) {
   runs.back() = '\x02', raw.back() = '\x02';
   EXPECT_THAT(said(numbered_targa(true, runs) + kTargaEnd), HasSubstr("a colour that its table"));
   EXPECT_THAT(said(numbered_targa(true, raw) + kTargaEnd), HasSubstr("a colour that its table"));
+  EXPECT_THAT(said(numbered_targa(false, zeros(64), 0) + kTargaEnd), HasSubstr("a colour that its table"))
+      << "numbers of no bits: of the largest size it took a minute";
   EXPECT_THAT(said(numbered_targa(false, std::string(256, '\x7f'), 32) + kTargaEnd),
               HasSubstr("a colour that its table"));
 }
