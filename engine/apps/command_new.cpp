@@ -94,12 +94,10 @@ Result<void> run_new(const NewArguments& arguments) {
     for (std::size_t done = 0; done < i; ++done) fs::remove(folder / files[done].path, ignored);
     return written;
   }
-  for (const auto& file : files) output("{}\n", (folder / file.path).lexically_normal().string());
-  const auto place = [&](const char* file) {
-    return (folder / fmt::format(fmt::runtime(file), arguments.name)).lexically_normal().string();
-  };
-  output("Try it:  afterglow run {} PICTURE -o out.png\n", place("{}.lua"));
-  if (is_effect) output("Test it: {}\n", place("tests/{}.sh"));
+  const auto place = [&](const std::string& file) { return (folder / file).lexically_normal().string(); };
+  for (const auto& file : files) output("{}\n", place(file.path));
+  output("Try it:  afterglow run {} PICTURE -o out.png\n", place(arguments.name + ".lua"));
+  if (is_effect) output("Test it: {}\n", place("tests/" + arguments.name + ".sh"));
   return {};
 }
 

@@ -113,14 +113,12 @@ Result<void> FarmArguments::check_word() const {
       return Error{ErrorKind::usage, fmt::format("'{}' is for one job", asked), "afterglow farm"};
     return {};
   }
-  const std::string nearest = nearest_name(run.preset.file, std::vector<std::string>(kWords.begin(), kWords.end()));
+  const std::vector<std::string> words(kWords.begin(), kWords.end());
+  const std::string nearest = nearest_name(run.preset.file, words);
   if (run.files.output.empty() && !nearest.empty())
-    return Error{ErrorKind::usage,
-                 fmt::format("'{}' is no word of it", run.preset.file),
-                 "afterglow farm",
-                 0,
-                 fmt::format("{}", fmt::join(kWords, ", ")),
-                 nearest};
+    return Error{ErrorKind::usage, fmt::format("'{}' is no word of it", run.preset.file),
+                 "afterglow farm", 0,
+                 join(words),      nearest};
   if (run.files.inputs.empty()) return Error{ErrorKind::usage, "INPUT is required", "afterglow farm"};
   if (run.files.output.empty()) return Error{ErrorKind::usage, "--output is required", "afterglow farm"};
   for (const auto& word : needs.more)

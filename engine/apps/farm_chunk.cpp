@@ -46,7 +46,7 @@ Result<void> make_frames(const farm::Job& job, std::size_t number, const RunEven
   request.resume = job.video.empty();
   if (!job.video.empty()) {
     request.files.output = job.piece(number).string();
-    AFTERGLOW_CHECK(make_folder(job.piece(number).parent_path()));  // a join has removed it
+    AFTERGLOW_CHECK(make_folder(job.pieces()));  // a join has removed it
     request.loop.write.video.piece = true;
     request.loop.keep_partial = false;
     request.loop.fail_fast = true;  // a piece with holes is none
@@ -56,7 +56,7 @@ Result<void> make_frames(const farm::Job& job, std::size_t number, const RunEven
 
 Result<void> join_pieces(const farm::Job& job, const RunEvents& events) {
   std::error_code ec;
-  if (const auto pieces = job.folder / "pieces"; !std::filesystem::exists(pieces, ec) && is_file(job.video)) {
+  if (!std::filesystem::exists(job.pieces(), ec) && is_file(job.video)) {
     events.diagnostics.note(fmt::format("{} was joined before", job.video));
     return {};
   }
@@ -78,7 +78,7 @@ Result<void> join_pieces(const farm::Job& job, const RunEvents& events) {
   if (job.holds_missing) hold_missing(frames);
   AFTERGLOW_CHECK(join_parts(request, frames, parts, events));
   std::error_code ignored;
-  std::filesystem::remove_all(job.folder / "pieces", ignored);
+  std::filesystem::remove_all(job.pieces(), ignored);
   return {};
 }
 

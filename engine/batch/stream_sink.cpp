@@ -125,8 +125,7 @@ class VideoBytes : public FrameBytes {
     plan.pack.layout = layout;
     AFTERGLOW_CHECK(check_video_size(plan, size_, kName));
     rules_.layout = layout;
-    rules_.space = options_.space ? options_.space
-                                  : find_output_space(layout->rgb_colors() || picture.view ? "srgb" : "rec709").value();
+    rules_.space = video_space(options_, *layout, picture.view);
     describe_space(*rules_.space, *layout, plan);
     // Nobody is told: readers take BT.601 for the matrix of what is no larger than standard definition.
     constexpr int kSmallWidth = 1024, kSmallHeight = 576;

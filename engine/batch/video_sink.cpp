@@ -92,7 +92,7 @@ class VideoSink : public FrameSink {
   Result<void> begin(const FrameJob& job, std::size_t held, const Picture& picture) {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
-    if (picture.view && !options_.space) plan.pack.space = find_output_space("srgb").value();
+    plan.pack.space = video_space(options_, *plan.pack.layout, picture.view);
     times_.begin(job, plan);
     if (picture.facts) keep_facts(*picture.facts, plan, held);
     if (options_.video.piece) plan.source.clear();

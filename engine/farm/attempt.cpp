@@ -79,8 +79,7 @@ void clean_up_after(const Job& job, const AttemptFile& attempt) {
   const auto mark = json["temporaries"].get<std::string>();
   const fs::path outputs = job.folder.parent_path().parent_path();
   if (!mark.empty())
-    for (const fs::path& folder : {outputs, outputs / ".afterglow", job.folder / "pieces"})
-      remove_temporaries_of(mark, folder);
+    for (const fs::path& folder : {outputs, outputs / ".afterglow", job.pieces()}) remove_temporaries_of(mark, folder);
 }
 
 }  // namespace

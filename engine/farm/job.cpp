@@ -120,7 +120,7 @@ std::vector<std::string> Job::command(std::size_t task) const {
 }
 
 fs::path Job::piece(std::size_t chunk) const {
-  return folder / "pieces" / fmt::format("{}{}", chunk, fs::path(video).extension().string());
+  return pieces() / fmt::format("{}{}", chunk, fs::path(video).extension().string());
 }
 
 std::vector<Chunk> Job::inputs() const {

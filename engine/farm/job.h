@@ -59,6 +59,8 @@ struct Job {
   bool is_join(std::size_t task) const { return task == chunks.size() && !video.empty(); }
   /// The words that make one chunk, or join the video.
   std::vector<std::string> command(std::size_t task) const;
+  /// Where chunks leave their parts of the video, until it is joined.
+  std::filesystem::path pieces() const { return folder / "pieces"; }
   /// Where a chunk leaves its part of the video.
   std::filesystem::path piece(std::size_t chunk) const;
   /// All frames as `run` takes them: inputs that follow each other and their frames, as few as can be.

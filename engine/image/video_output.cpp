@@ -233,6 +233,10 @@ void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPl
   plan.pack.luma = tags.luma;
 }
 
+const OutputSpace* video_space(const WriteOptions& options, const PixelLayout& layout, bool view) {
+  return options.space ? options.space : find_output_space(layout.rgb_colors() || view ? "srgb" : "rec709").value();
+}
+
 Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptions& options, bool deep,
                              bool has_alpha) {
   const Container* container = container_of(file);
@@ -252,8 +256,7 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
                                           : layout.chroma_x > 0 ? "dnxhr_hqx"
                                                                 : "dnxhr_444");
   }
-  const bool picture = plan.pack.layout->rgb_colors();
-  plan.pack.space = options.space ? options.space : find_output_space(picture ? "srgb" : "rec709").value();
+  plan.pack.space = video_space(options, *plan.pack.layout, false);
   describe_space(*plan.pack.space, *plan.pack.layout, plan);
   plan.pack.dither = options.dither.value_or(codec->exact && plan.pack.layout->bits == 8);
   if (!options.video.piece) plan.audio = options.video.audio;

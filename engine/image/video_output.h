@@ -57,6 +57,9 @@ struct VideoPlan {
 /// format that the codec does not have, options that it does not take.
 Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptions& options, bool deep, bool has_alpha);
 
+/// The space of a video's codes: what was asked for; sRGB of RGB and of a view's codes (Picture::view), else BT.709.
+const OutputSpace* video_space(const WriteOptions& options, const PixelLayout& layout, bool view);
+
 /// What a video keeps of the file of its first picture: the time code, the shape of a pixel.
 /// `held`: places before it that it holds, too.
 void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held = 0);

@@ -222,24 +222,11 @@ Rgb behind_edge(const DoubleImage& source, const DoubleImage& circles, int x, in
     const double there = circles.clamped(x + dx, y + dy).r;
     return glm::clamp(glm::min(-there, circle - there) - 0.5, 0.0, 1.0);
   };
-  const Rgb color(source.at(x, y));
-  Point away(0);
-  double edge = 0;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      away -= before(dx, dy) * Point(dx, dy);
-      edge = glm::max(edge, before(dx, dy));
-    }
-  Rgb sum = 1e-3 * color;
-  double weights = 1e-3;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const double other = circles.clamped(x + dx, y + dy).r - circle;
-      const double weight = away_from(away, {double(dx), double(dy)}) * (1 - before(dx, dy)) / (1 + other * other);
-      sum += weight * Rgb(source.clamped(x + dx, y + dy));
-      weights += weight;
-    }
-  return color * (1 - edge) + sum / weights * edge;
+  const auto like = [&](int dx, int dy) {
+    const double other = circles.clamped(x + dx, y + dy).r - circle;
+    return 1 / (1 + other * other);
+  };
+  return mean_behind_edge(source, x, y, before, like);
 }
 
 }  // namespace

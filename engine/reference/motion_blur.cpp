@@ -69,23 +69,7 @@ Rgb behind_edge(const Moving& m, int x, int y) {
     return glm::max(m.nearer(x + dx, y + dy, x, y), 0.0) * glm::clamp(longer(way) - 0.5, 0.0, 1.0) *
            differs(way, m.way(x, y));
   };
-  const Rgb color(m.source.at(x, y));
-  Way away(0);
-  double edge = 0;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      away -= before(dx, dy) * Way(dx, dy);
-      edge = glm::max(edge, before(dx, dy));
-    }
-  Rgb sum = 1e-3 * color;
-  double weights = 1e-3;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const double weight = away_from(away, {double(dx), double(dy)}) * (1 - before(dx, dy));
-      sum += weight * Rgb(m.source.clamped(x + dx, y + dy));
-      weights += weight;
-    }
-  return color * (1 - edge) + sum / weights * edge;
+  return mean_behind_edge(m.source, x, y, before, [](int, int) { return 1.0; });
 }
 
 /// What crosses one pixel.

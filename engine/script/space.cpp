@@ -106,15 +106,13 @@ void read_space(lua_State* lua, TableReader& table, Effect& effect) {
 
 std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>& runs) {
   std::vector<EntrySpace> out(runs.size());
-  std::vector<bool> runs_now(runs.size());
   std::string maker;  // of display light, once it is made
   LightSpace light = LightSpace::scene;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs_now[i] = runs[i].entry.enabled && !inactive_reason(lua, runs[i]);
     out[i].use = use_of(lua, runs[i]);
-    out[i].runs = runs_now[i];
+    out[i].runs = runs[i].entry.enabled && !inactive_reason(lua, runs[i]);
     out[i].before = out[i].behind = light;
-    if (!runs_now[i]) continue;
+    if (!out[i].runs) continue;
     if (out[i].use.needs == LightSpace::scene && light == LightSpace::display)
       out[i].warning = fmt::format("'{}' is made for scene-linear light, but '{}' before it makes display-linear light",
                                    runs[i].entry.name, maker);
@@ -124,7 +122,7 @@ std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>
   }
   std::string later;  // the entry behind that makes display light
   for (std::size_t i = runs.size(); i-- > 0;) {
-    if (!runs_now[i]) continue;
+    if (!out[i].runs) continue;
     if (out[i].use.needs == LightSpace::display && out[i].before == LightSpace::scene && !later.empty())
       out[i].warning = fmt::format("'{}' is made for display-linear light, but '{}', which makes it, comes behind it",
                                    runs[i].entry.name, later);
