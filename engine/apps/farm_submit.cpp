@@ -46,7 +46,7 @@ Result<void> check_sequences(const PlannedJob& planned) {
 }
 
 /// Frames that are still to be rendered may be submitted; whoever has mistaken their numbers sees it here.
-void tell_missing(const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
+void tell_not_there_yet(const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
   const auto missing = [](const FrameJob& frame) { return !frame.movie && !is_file(frame.input); };
   const auto count = std::ranges::count_if(frames, missing);
   if (count > 0)
@@ -92,7 +92,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   const bool video = is_one_output(request.files.output);
   take_fps(request, out.frames);
   AFTERGLOW_CHECK(check_parts(request, out.frames, console.diagnostics()));
-  tell_missing(out.frames, console.diagnostics());
+  tell_not_there_yet(out.frames, console.diagnostics());
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
   farm::Job& job = out.job;
   std::error_code ec;

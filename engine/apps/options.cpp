@@ -175,6 +175,8 @@ void ExecutionArguments::add_calibration(CLI::App& command) {
 }
 
 Result<StackOptions> ExecutionArguments::options() const {
+  if (reference && precision == "fp16")
+    return Error{ErrorKind::usage, "--reference stores full floats: --precision fp16 cannot be"};
   StackOptions options;
   options.precision = precision == "fp32"   ? Precision::fp32
                       : precision == "fp16" ? Precision::fp16

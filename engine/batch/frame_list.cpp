@@ -226,7 +226,7 @@ std::string missing_text(const std::vector<FrameFile>& files) {
 }
 
 /// Of a sequence that is taken whole. `held`: its frames keep their times. Errors: usage (a video without an end).
-Result<void> tell_missing(const std::string& input, const std::vector<FrameFile>& files, bool held,
+Result<void> tell_gaps(const std::string& input, const std::vector<FrameFile>& files, bool held,
                           Diagnostics& diagnostics) {
   constexpr int kMostPlaces = 1'000'000;  // as many as a list of frames may name
   const std::string missing = missing_text(files);
@@ -253,7 +253,7 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
   AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
   const bool held = names.takes_all() && request.inputs.size() == 1;
-  if (pattern.numbered && !frames) AFTERGLOW_CHECK(tell_missing(input, files, held, diagnostics));
+  if (pattern.numbered && !frames) AFTERGLOW_CHECK(tell_gaps(input, files, held, diagnostics));
   for (const auto& [frame, file] : files) {
     AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : name_without_number(file), {frame, file}));
     job.output = names.name(file, frame);

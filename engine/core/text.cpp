@@ -138,7 +138,8 @@ std::string memory_text(std::uint64_t bytes) {
   const auto value = static_cast<double>(bytes);
   if (value >= 1024.0 * 1024 * 1024) return fmt::format("{:.1f} GiB", value / (1024.0 * 1024 * 1024));
   if (value >= 1024.0 * 1024) return fmt::format("{:.0f} MiB", value / (1024.0 * 1024));
-  return fmt::format("{:.0f} KiB", value / 1024.0);
+  if (value >= 1024.0) return fmt::format("{:.0f} KiB", value / 1024.0);
+  return fmt::format("{} byte{}", bytes, bytes == 1 ? "" : "s");
 }
 
 }  // namespace afterglow

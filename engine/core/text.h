@@ -29,7 +29,7 @@ std::string markup_text(std::string_view text);
 /// Shortest decimal text that reads back as the same float ("0.2", not "0.20000000298").
 std::string number_text(double value);
 
-/// "6.0 GiB", "512 MiB", "3 KiB".
+/// "6.0 GiB", "512 MiB", "3 KiB", "12 bytes".
 std::string memory_text(std::uint64_t bytes);
 
 }  // namespace afterglow

@@ -25,11 +25,11 @@
 namespace afterglow {
 namespace {
 
-enum class Kind { text, number, rate };
+enum class Kind { text, number, whole, rate };
 struct NamePair {
   const char* exr;
   const char* general;
-  Kind kind;  ///< EXR's standard attributes have fixed types
+  Kind kind;  ///< EXR's standard attributes have fixed types; `whole` is a float there and an integer in Exif
 };
 /// The same pairs as in OpenImageIO's reader and writer.
 constexpr std::array kNames{
@@ -39,9 +39,9 @@ constexpr std::array kNames{
     NamePair{"altitude", "GPS:Altitude", Kind::number},
     NamePair{"expTime", "ExposureTime", Kind::number},
     NamePair{"aperture", "FNumber", Kind::number},
-    NamePair{"isoSpeed", "Exif:ISOSpeedRatings", Kind::number},
+    NamePair{"isoSpeed", "Exif:PhotographicSensitivity", Kind::whole},  // its name in Exif since 2.3
+    NamePair{"isoSpeed", "Exif:ISOSpeedRatings", Kind::whole},
     NamePair{"focus", "Exif:SubjectDistance", Kind::number},
-    NamePair{"isoSpeed", "Exif:PhotographicSensitivity", Kind::number},
     NamePair{"framesPerSecond", "FramesPerSecond", Kind::rate},
     NamePair{"pixelAspectRatio", "PixelAspectRatio", Kind::number},
 };
@@ -88,10 +88,10 @@ constexpr std::array<std::string_view, 40> kReserved{"chromaticities",
                                                      "lineOrder",
                                                      "tiles"};
 
-std::string general_name(const std::string& name) {
+const NamePair* pair_of_exr(std::string_view name) {
   for (const NamePair& pair : kNames)
-    if (name == pair.exr) return pair.general;
-  return name;
+    if (name == pair.exr) return &pair;
+  return nullptr;
 }
 
 const NamePair* pair_of(const std::string& name) {
@@ -153,6 +153,7 @@ void insert_pair(Imf::Header& header, const NamePair& pair, const MetadataValue&
       header.insert(pair.exr, Imf::StringAttribute(metadata_text(value)));
       break;
     case Kind::number:
+    case Kind::whole:
       if (const float number = metadata_number(value, 0); std::isfinite(number) && number > 0)
         header.insert(pair.exr, Imf::FloatAttribute(number));
       break;
@@ -171,13 +172,16 @@ Metadata metadata_of(const Imf::Header& header) {
   for (auto it = header.begin(); it != header.end(); ++it) {
     const Imf::Attribute& attribute = it.attribute();
     if (std::string_view(it.name()) == "xDensity") continue;
-    MetadataEntry entry{general_name(it.name()), {}};
+    const NamePair* pair = pair_of_exr(it.name());
+    MetadataEntry entry{pair ? pair->general : it.name(), {}};
     if (const auto* text = as<Imf::StringAttribute>(attribute)) {
       entry.value = text->value();
     } else if (const auto* integer = as<Imf::IntAttribute>(attribute)) {
       entry.value = integer->value();
     } else if (const auto* number = as<Imf::FloatAttribute>(attribute)) {
       entry.value = number->value();
+      if (pair && pair->kind == Kind::whole && number->value() >= 1 && number->value() < 1e9f)
+        entry.value = static_cast<int>(std::lround(number->value()));
     } else if (const auto* wide = as<Imf::DoubleAttribute>(attribute)) {
       entry.value = static_cast<float>(wide->value());
     } else if (const auto* rational = as<Imf::RationalAttribute>(attribute)) {

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/saturated.h"
+#include "core/text.h"
 #include "image/container_check.h"
 #include "image/exr_file.h"
 #include "image/movie.h"
@@ -26,8 +27,8 @@ Result<void> check_room(const std::filesystem::path& file, std::uint64_t least) 
 Result<void> check_decoder(const std::filesystem::path& file, std::uint64_t bytes, const SizeLimits& limits) {
   if (bytes <= limits.max_bytes) return {};
   return Error{ErrorKind::io,
-               fmt::format("needs {} MiB to decode, more than the {} MiB allowed (--max-memory)", bytes >> 20,
-                           limits.max_bytes >> 20),
+               fmt::format("needs {} to decode, more than the {} allowed (--max-memory)", memory_text(bytes),
+                           memory_text(limits.max_bytes)),
                file.string()};
 }
 

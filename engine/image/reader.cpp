@@ -291,8 +291,8 @@ Result<Picture> read_opened(Opened& opened, const ReadOptions& options, Diagnost
   keep_wanted(plan.auxiliary, options.auxiliary);
   if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
     return Error{ErrorKind::io,
-                 fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
-                             options.max_bytes >> 20),
+                 fmt::format("needs {} of memory, more than the {} allowed (--max-memory)", memory_text(bytes),
+                             memory_text(options.max_bytes)),
                  plan.file->path().string()};
   auto picture = read_planned(plan, options, diagnostics);
   // Whatever was read then, it is neither the old picture nor the new one.

@@ -29,6 +29,8 @@ Error wrong(const std::string& name, const std::string& why, std::string allowed
 
 Result<void> check_identifier(const std::string& name, const char* what) {
   if (script::is_identifier(name)) return {};
+  if (name.ends_with(".lua") && script::is_identifier(name.substr(0, name.size() - 4)))
+    return wrong(name, fmt::format("cannot be the name of {}", what), name.substr(0, name.size() - 4));
   return wrong(name, fmt::format("cannot be the name of {}", what), "1 to 64 letters, digits and '_', no digit first");
 }
 

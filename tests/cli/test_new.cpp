@@ -97,6 +97,7 @@ TEST_F(New, Names) {
               HasSubstr("'../haze' cannot be the name of an effect; allowed: 1 to 64 letters, digits and "
                         "'_', no digit first"));
   EXPECT_THAT(error("2d"), HasSubstr("cannot be the name"));
+  EXPECT_THAT(error("haze.lua"), HasSubstr("'haze.lua' cannot be the name of an effect; allowed: haze\n"));
   EXPECT_THAT(error("end"), HasSubstr("'end' is a word of Lua; fx.end could not be written"));
   EXPECT_THAT(error("stack"), HasSubstr("'stack' is a name of the library: fx.stack"));
   EXPECT_THAT(error("bloom"), HasSubstr("'bloom' is an effect already: "));

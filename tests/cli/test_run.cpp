@@ -86,6 +86,9 @@ TEST_F(Run, OverridesChangePixelsAndPrecisionHardly) {
   ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "3.png", "--reference"}).exit_code, kDone);
   EXPECT_NE(read("1.png"), read("2.png"));
   EXPECT_EQ(read("1.png"), read("3.png"));
+  const Outcome both = run({"run", "look.lua", "a.exr", "-o", "4.png", "--reference", "--precision", "fp16"});
+  EXPECT_EQ(both.exit_code, kUsage);
+  EXPECT_THAT(both.err, HasSubstr("--reference stores full floats"));
 }
 
 TEST_F(Run, StatsNameEveryStep) {

@@ -15,7 +15,7 @@ TEST_F(HostileHeaders, ExrTileSizesWhoseProductRunsOver) {
   // 2²⁹ · 2²⁹ pixels of 2⁶ bytes are 2⁶⁴: nothing at all, to a counter of 64 bits.
   RawExr exr;
   exr.windows(0, 0, 7, 7).channels(16, ExrChannelType::float32).tiles(1 << 29, 1 << 29);
-  EXPECT_THAT(refused(exr.single(true)).message, HasSubstr("to decode, more than the 6144 MiB allowed"));
+  EXPECT_THAT(refused(exr.single(true)).message, HasSubstr("to decode, more than the 6.0 GiB allowed"));
 }
 
 TEST_F(HostileHeaders, ExrTablesOfTilesThatTheFileDoesNotHold) {
