@@ -12,6 +12,9 @@ namespace {
 
 // A fragment stage may use 16 sampled images on any Vulkan device.
 constexpr std::size_t kMaxImagesPerKernel = 16;
+// Drivers take more than twice as long to compile a kernel of twice the length, and shader/weight.h has a limit for it.
+// An image more is soon stored and read.
+constexpr std::size_t kMaxPassesPerKernel = 24;
 
 std::vector<bool> passes_that_matter(const Graph& graph) {
   std::vector<bool> read(graph.images.size(), false), keep(graph.passes.size(), false);
@@ -121,7 +124,8 @@ class Joiner {
         if (first(kernels_[feeder]).kind == PassKind::compute && must_be_drawn(graph_, kernel.output)) continue;
         PlanKernel both{kernel.passes, "", kernel.output};
         both.passes.insert(both.passes.end(), kernels_[feeder].passes.begin(), kernels_[feeder].passes.end());
-        if (bound_images(graph_, both) <= kMaxImagesPerKernel) return feeder;
+        if (both.passes.size() <= kMaxPassesPerKernel && bound_images(graph_, both) <= kMaxImagesPerKernel)
+          return feeder;
       }
     return -1;
   }

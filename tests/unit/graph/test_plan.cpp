@@ -213,6 +213,21 @@ TEST(Plan, StopsBeforeTooManyImages) {
   EXPECT_EQ(make_plan(b.graph, {}).kernels.back().name, "test.x+test.b");  // with "a" there would be 17 images
 }
 
+TEST(Plan, StopsBeforeKernelsGrowTooLong) {
+  Builder b;
+  ImageId image = b.filter("blur", b.graph.source, {16, 8});
+  for (int i = 0; i < 60; ++i) image = b.pixel("p" + std::to_string(i), image);
+  std::size_t longest = 0, passes = 0;
+  const Plan plan = make_plan(b.graph, {});
+  for (const auto& kernel : plan.kernels) {
+    longest = std::max(longest, kernel.passes.size());
+    passes += kernel.passes.size();
+  }
+  EXPECT_EQ(passes, 61u);
+  EXPECT_EQ(longest, 24u);
+  EXPECT_EQ(plan.kernels.size(), 3u);
+}
+
 // On random graphs: fused or not, every pass that matters runs once and after what it reads; lifetimes cover all
 // readers.
 TEST(Plan, HoldsOnRandomGraphs) {
