@@ -18,6 +18,30 @@ Info* link_of(const void* next) {
   return const_cast<Info*>(info);
 }
 
+/// A function of an instance or a device.
+template <typename Function, typename Get, typename Owner>
+Function function_of(Get get, Owner owner, const char* name) {
+  return reinterpret_cast<Function>(get(owner, name));
+}
+
+/// Takes this layer's link out of the chain. `below`: where the functions of the layer below are found, then.
+inline bool take_link(const VkInstanceCreateInfo& info, PFN_vkGetInstanceProcAddr& below) {
+  auto* link = link_of<VkLayerInstanceCreateInfo, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info.pNext);
+  if (!link) return false;
+  below = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+  return true;
+}
+inline bool take_link(const VkDeviceCreateInfo& info, PFN_vkGetInstanceProcAddr& create,
+                      PFN_vkGetDeviceProcAddr& below) {
+  auto* link = link_of<VkLayerDeviceCreateInfo, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info.pNext);
+  if (!link) return false;
+  create = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+  below = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
+  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+  return true;
+}
+
 /// The body of vkNegotiateLoaderLayerInterfaceVersion.
 inline VkResult negotiate(VkNegotiateLayerInterface* wanted, PFN_vkGetInstanceProcAddr instance,
                           PFN_vkGetDeviceProcAddr device) {

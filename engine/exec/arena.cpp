@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "gpu/error.h"
+#include "core/text.h"
 #include "graph/history.h"
 
 namespace afterglow {
@@ -68,7 +68,7 @@ std::vector<Arena::Wanted> Arena::wanted(const Device& device, const Graph& grap
 Result<void> Arena::check_memory(const ArenaOptions& options) const {
   if (memory_.arena <= options.max_memory) return {};
   return Error{ErrorKind::io, fmt::format("the stack needs {} for its images, more than the {} allowed (--max-memory)",
-                                          bytes_text(memory_.arena), bytes_text(options.max_memory))};
+                                          memory_text(memory_.arena), memory_text(options.max_memory))};
 }
 
 Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options) {

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "core/stopwatch.h"
+#include "core/text.h"
 #include "exec/host_input.h"
-#include "gpu/error.h"
 
 namespace afterglow {
 namespace {
@@ -36,7 +36,7 @@ Result<void> FrameImages::check_memory(const std::map<std::string, ImageDesc>& d
   if (total <= options_.max_memory) return {};
   return Error{ErrorKind::io,
                fmt::format("the frame needs {} of device memory, more than the {} allowed (--max-memory)",
-                           bytes_text(total), bytes_text(options_.max_memory))};
+                           memory_text(total), memory_text(options_.max_memory))};
 }
 
 Result<void> FrameImages::prepare(const Program& program, const std::map<std::string, HostImage>& host) {

@@ -71,6 +71,21 @@ struct FrameRunner::State {
   Result<FrameTimes> end();
 };
 
+namespace {
+
+bool makes_result(const Program& program, std::size_t kernel) {
+  return program.plan().kernels[kernel].output == program.graph().result;
+}
+
+/// A result that is not made anew keeps its pixels, and so its layout.
+bool makes_result(const Program& program, const std::vector<bool>& run) {
+  for (std::size_t kernel = 0; kernel < run.size(); ++kernel)
+    if (run[kernel] && makes_result(program, kernel)) return true;
+  return false;
+}
+
+}  // namespace
+
 FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)) {}
 FrameRunner::~FrameRunner() = default;
 
@@ -93,6 +108,7 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
   const auto& kernels = program.plan().kernels;
   const bool separate = timing == KernelTiming::submissions;
   const bool stamps = timing == KernelTiming::timestamps && device.timestamps_mean_draws();
+  const bool draws_result = makes_result(program, run);
   VkQueryPool queries = VK_NULL_HANDLE;
   if (stamps) {
     AFTERGLOW_TRY(queries, timer.queries(kernels.size() + 1));
@@ -120,11 +136,11 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
                          : submitter.submit(
                                [&](VkCommandBuffer commands) {
                                  images.inputs.before(program, commands);
-                                 images.result.before(commands);
+                                 if (draws_result) images.result.before(commands);
                                  program.record(commands, queries, run);
                                  if (separate) return;
                                  images.inputs.after(commands);
-                                 images.result.after(commands);
+                                 if (draws_result) images.result.after(commands);
                                },
                                which);
   if (!submitted) return KernelTimer::blame(std::move(submitted).error(), program.plan());
@@ -157,7 +173,7 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
   AFTERGLOW_CHECK(submitter.submit(
       [&](VkCommandBuffer commands) {
         images.inputs.after(commands);
-        images.result.after(commands);
+        if (makes_result(program, run)) images.result.after(commands);
       },
       kOneOff));
   return submitter.wait();
@@ -332,7 +348,7 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
   const State::Bound bound{program.id(), s.images.handles(), program.bindings()};
   if (s.images.result.writer() != program.id() || s.bound != bound || kernel >= program.plan().kernels.size())
     return std::optional<double>();
-  const bool makes_result = program.plan().kernels[kernel].output == program.graph().result;
+  const bool draws_result = makes_result(program, kernel);
   const bool stamps = s.device.timestamps_mean_draws();
   VkQueryPool queries = VK_NULL_HANDLE;
   if (stamps) {
@@ -342,10 +358,10 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
   AFTERGLOW_CHECK(s.submitter.submit(
       [&](VkCommandBuffer commands) {
         s.images.inputs.before(program, commands);
-        if (makes_result) s.images.result.before(commands);
+        if (draws_result) s.images.result.before(commands);
         program.record_again(commands, kernel, queries);
         s.images.inputs.after(commands);
-        if (makes_result) s.images.result.after(commands);
+        if (draws_result) s.images.result.after(commands);
       },
       State::kOneOff));
   AFTERGLOW_CHECK(s.submitter.wait());

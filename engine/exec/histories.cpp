@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "gpu/error.h"
+#include "core/text.h"
 #include "graph/history.h"
 
 namespace afterglow {
@@ -65,7 +65,7 @@ Result<void> Histories::fit(const Device& device, const Graph& graph, const Opti
   if (total > options.max_memory)
     return Error{ErrorKind::io, fmt::format("the stack needs {} for its histories, more than the {} allowed "
                                             "(--max-memory)",
-                                            bytes_text(total), bytes_text(options.max_memory))};
+                                            memory_text(total), memory_text(options.max_memory))};
   std::erase_if(kept_, [&](const auto& kept) { return !wanted.contains(kept.first); });
   for (const auto& history : graph.histories) {
     const Hash part = history_part(graph, history);

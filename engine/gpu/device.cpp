@@ -45,6 +45,9 @@ Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& ch
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
       .pNext = &synchronization,
       .dynamicRendering = VK_TRUE};
+  VkPhysicalDeviceImageRobustnessFeatures robustness{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_ROBUSTNESS_FEATURES, .robustImageAccess = VK_TRUE};
+  if (can_bound_image_reads(vk, chosen.handle, chosen.info.api_version)) synchronization.pNext = &robustness;
   const VkPhysicalDeviceFeatures wanted{.fragmentStoresAndAtomics = can_store_from_fragments(vk, chosen.handle),
                                         .shaderStorageImageExtendedFormats = can_store_few_channels(vk, chosen.handle)};
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,

@@ -68,6 +68,10 @@ std::vector<const char*> stand_ins(std::uint32_t api_version) {
   return names;
 }
 
+bool has_image_robustness_extension(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t api_version) {
+  return api_version < VK_API_VERSION_1_3 && extensions_of(vk, device).contains(VK_EXT_IMAGE_ROBUSTNESS_EXTENSION_NAME);
+}
+
 bool can_compute_alone(const VulkanFunctions& vk, VkPhysicalDevice device) {
   std::uint32_t count = 0;
   vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -155,9 +159,19 @@ std::vector<const char*> extensions_to_enable(const VulkanFunctions& vk, VkPhysi
                                               std::uint32_t api_version, bool present) {
   std::vector<const char*> names = stand_ins(api_version);
   if (present) names.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  if (has_image_robustness_extension(vk, device, api_version)) names.push_back(VK_EXT_IMAGE_ROBUSTNESS_EXTENSION_NAME);
   // Drivers that leave out parts of Vulkan want to be told that this is known.
   if (extensions_of(vk, device).contains(kPortabilitySubset)) names.push_back(kPortabilitySubset);
   return names;
+}
+
+bool can_bound_image_reads(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t api_version) {
+  if (api_version < VK_API_VERSION_1_3 && !has_image_robustness_extension(vk, device, api_version)) return false;
+  VkPhysicalDeviceImageRobustnessFeatures robustness{.sType =
+                                                         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_ROBUSTNESS_FEATURES};
+  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &robustness};
+  vk.vkGetPhysicalDeviceFeatures2(device, &features);
+  return robustness.robustImageAccess;
 }
 
 PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice device, VkSurfaceKHR surface) {

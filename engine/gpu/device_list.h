@@ -32,6 +32,9 @@ Result<std::vector<PhysicalDevice>> enumerate_devices(const VulkanFunctions& vk,
 std::vector<const char*> extensions_to_enable(const VulkanFunctions& vk, VkPhysicalDevice device,
                                               std::uint32_t api_version, bool present);
 
+/// Whether reads beside an image can be made to give zeros (robustImageAccess): authors may use texelFetch.
+bool can_bound_image_reads(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t api_version);
+
 /// Name, type, driver, uuid and whether it can be used; with `surface`, whether it can present to it too.
 PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice device,
                                VkSurfaceKHR surface = VK_NULL_HANDLE);

@@ -53,12 +53,4 @@ Error vulkan_error(VkResult result, std::string_view what) {
   return Error{ErrorKind::device, fmt::format("{}: {}", what, result_name(result))};
 }
 
-std::string bytes_text(unsigned long long bytes) {
-  const auto value = static_cast<double>(bytes);
-  if (bytes >= 1ull << 30) return fmt::format("{:.1f} GiB", value / (1ull << 30));
-  if (bytes >= 1ull << 20) return fmt::format("{:.0f} MiB", value / (1ull << 20));
-  if (bytes >= 1ull << 10) return fmt::format("{:.0f} KiB", value / (1ull << 10));
-  return fmt::format("{} bytes", bytes);
-}
-
 }  // namespace afterglow

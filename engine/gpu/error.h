@@ -15,9 +15,6 @@ std::string result_name(VkResult result);
 /// A `device` error: "WHAT: out of device memory (VK_ERROR_OUT_OF_DEVICE_MEMORY)".
 Error vulkan_error(VkResult result, std::string_view what);
 
-/// "1.5 GiB", "130 MiB", "12 KiB", "640 bytes": for messages.
-std::string bytes_text(unsigned long long bytes);
-
 /// Returns the error of a Vulkan call that did not succeed.
 #define AFTERGLOW_VK(call, what) \
   if (const VkResult vk_result_ = (call); vk_result_ != VK_SUCCESS) return ::afterglow::vulkan_error(vk_result_, what)

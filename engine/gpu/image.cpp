@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "gpu/error.h"
 
 namespace afterglow {
@@ -64,7 +65,8 @@ Result<void> check_image(const Device& device, const ImageDesc& desc) {
   const auto bytes = static_cast<VkDeviceSize>(desc.size.area()) * bytes_per_pixel(desc.format);
   const auto max_bytes = std::min(limits.maxResourceSize, device.max_allocation());
   if (bytes > max_bytes) {
-    return fail(fmt::format("needs {}, the device allows {} for one image", bytes_text(bytes), bytes_text(max_bytes)));
+    return fail(
+        fmt::format("needs {}, the device allows {} for one image", memory_text(bytes), memory_text(max_bytes)));
   }
   return {};
 }

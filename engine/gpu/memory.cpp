@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/large_pages.h"
+#include "core/text.h"
 #include "gpu/error.h"
 
 namespace afterglow {
@@ -42,30 +43,52 @@ std::optional<std::uint32_t> find_memory_type(const VkPhysicalDeviceMemoryProper
   return std::nullopt;
 }
 
+namespace {
+
+struct Taken {
+  VkDeviceMemory handle = VK_NULL_HANDLE;
+  std::uint32_t type = 0;
+};
+
+/// Of the best type that has room: when a device's own memory is full, that of the host may do.
+Result<Taken> take_memory(const Device& device, const VkMemoryRequirements& needs, HostAccess access,
+                          std::string_view what) {
+  Error refused{ErrorKind::device, fmt::format("{}: the device has no suitable memory", what)};
+  std::uint32_t bits = needs.memoryTypeBits;
+  while (const auto type = find_memory_type(device.memory(), bits, access)) {
+    const VkMemoryAllocateInfo info{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
+    Taken taken{VK_NULL_HANDLE, *type};
+    const VkResult done = device.vk().vkAllocateMemory(device.handle(), &info, nullptr, &taken.handle);
+    if (done == VK_SUCCESS) return taken;
+    refused = vulkan_error(done, fmt::format("cannot allocate {} for {}", memory_text(needs.size), what));
+    if (done != VK_ERROR_OUT_OF_DEVICE_MEMORY) break;
+    bits &= ~(1u << *type);
+  }
+  return refused;
+}
+
+}  // namespace
+
 Result<Memory> Memory::allocate(const Device& device, const VkMemoryRequirements& needs, HostAccess access,
                                 std::string_view what) {
   if (needs.size > device.max_allocation()) {
     return Error{ErrorKind::device, fmt::format("{}: needs {} in one piece, the device allows {}", what,
-                                                bytes_text(needs.size), bytes_text(device.max_allocation()))};
+                                                memory_text(needs.size), memory_text(device.max_allocation()))};
   }
-  const auto type = find_memory_type(device.memory(), needs.memoryTypeBits, access);
-  if (!type) return Error{ErrorKind::device, fmt::format("{}: the device has no suitable memory", what)};
-  const VkMemoryAllocateInfo info{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
-  VkDeviceMemory handle = VK_NULL_HANDLE;
-  AFTERGLOW_VK(device.vk().vkAllocateMemory(device.handle(), &info, nullptr, &handle),
-               fmt::format("cannot allocate {} for {}", bytes_text(needs.size), what));
+  AFTERGLOW_TRY(const Taken taken, take_memory(device, needs, access, what));
+  const auto [handle, type] = taken;
   Memory out;
   out.device_ = &device;
   out.memory_ = MemoryHandle(device, handle);
   out.size_ = needs.size;
-  out.coherent_ = device.memory().memoryTypes[*type].propertyFlags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  out.coherent_ = device.memory().memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   if (access != HostAccess::none) {
     void* mapped = nullptr;
     AFTERGLOW_VK(device.vk().vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
     out.mapped_ = static_cast<std::byte*>(mapped);
     if (device.is_cpu()) use_large_pages(out.mapped_, needs.size);
-  } else if (device.is_cpu() && is_visible(device, *type) && !device.forced().unmapped) {
+  } else if (device.is_cpu() && is_visible(device, type) && !device.forced().unmapped) {
     void* mapped = nullptr;
     AFTERGLOW_VK(device.vk().vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
     use_large_pages(static_cast<std::byte*>(mapped), needs.size);

@@ -15,7 +15,8 @@ namespace afterglow {
 Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface) {
   const auto& limits = device.properties().limits;
   const VkShaderStageFlags stage = interface.stage();
-  const VkShaderStageFlags parameters = stage | (interface.vertex ? VkShaderStageFlags{VK_SHADER_STAGE_VERTEX_BIT} : 0u);
+  const VkShaderStageFlags parameters =
+      stage | (interface.vertex ? VkShaderStageFlags{VK_SHADER_STAGE_VERTEX_BIT} : 0u);
   const auto check = [&](VkDescriptorType type, std::uint32_t most) -> Result<void> {
     const auto count = static_cast<std::uint32_t>(std::count(interface.images.begin(), interface.images.end(), type));
     if (count <= most) return {};

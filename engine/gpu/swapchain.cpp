@@ -136,7 +136,9 @@ Result<bool> Swapchain::make_chain(Size window) {
       .imageArrayLayers = 1,
       .imageUsage = usage,
       .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
-      .preTransform = surface.currentTransform,
+      .preTransform = (surface.supportedTransforms & VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR)
+                          ? VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR  // the display turns it, where it is turned
+                          : surface.currentTransform,
       .compositeAlpha = choose_alpha(surface.supportedCompositeAlpha),
       .presentMode = choose_present_mode(modes, options_.tearing),
       .clipped = VK_FALSE,  // images keep what was drawn into them, under other windows too

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What one asks a player about the frame on screen, and what one tells it to play.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "image/metadata.h"
+#include "image/non_finite.h"
 #include "play/player.h"
 #include "play/player_state.h"
 #include "script/schema.h"
@@ -143,6 +147,16 @@ Result<Picture> Player::State::whole_frame() {
   return whole;
 }
 
+/// Files hold finite colours, as those of `run` do.
+void Player::State::mend(Image& color) {
+  const NonFinite found = find_non_finite(color);
+  if (found.count() == 0) return;
+  for (float& value : color.pixels)
+    if (!std::isfinite(value)) value = 0;
+  diagnostics.warn(
+      fmt::format("the result holds {}, first at {}; they are replaced by 0", found.text(), found.first->text()));
+}
+
 Result<Picture> Player::screenshot() {
   State& s = *state_;
   if (!s.picture) return Error{ErrorKind::other, "no picture is shown"};
@@ -160,6 +174,7 @@ Result<Picture> Player::screenshot() {
   if (size != out.color.size()) {  // an image between passes
     out.color = Image(size.width, size.height, 4);
     out.color.pixels = s.result.pixels;
+    s.mend(out.color);
     out.data_window = out.display_window = {0, 0, size.width, size.height};
     out.auxiliary.clear();
     return out;
@@ -169,6 +184,7 @@ Result<Picture> Player::screenshot() {
   for (std::size_t i = 0; i < pixels; ++i)
     std::copy_n(s.result.pixels.begin() + static_cast<std::ptrdiff_t>(i * 4), 3,
                 out.color.pixels.begin() + static_cast<std::ptrdiff_t>(i * 4));
+  s.mend(out.color);
   return out;
 }
 

@@ -78,6 +78,7 @@ struct Player::State {
   Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);
   BuildContext context(int position, int proxy) const;
   Result<Picture> whole_frame();
+  void mend(Image& color);
   void apply_edits();
   void take_the_place_of_given(std::vector<BaseChange>& changes);
   struct Looked;

@@ -26,19 +26,22 @@ constexpr std::string_view kHeader =
     "layout(push_constant) uniform ag_Push { ivec2 ag_target_size; ivec2 ag_source_size; };\n";
 
 /// Rounds to half floats, to nearest even, so that the store is exact whatever rounding the device's attachments have.
+/// A NaN stays one, whichever it is: adding to the bits of some would make numbers of them.
 constexpr std::string_view kRoundToHalf = R"(
 vec4 ag_round_to_half(vec4 v) {
-  v = mix(v, vec4(65504.0), greaterThan(v, vec4(65504.0)));           // unlike clamp, hands a NaN on
-  v = mix(v, vec4(-65504.0), lessThan(v, vec4(-65504.0)));
+  bvec4 nan = greaterThan(floatBitsToUint(v) & 0x7fffffffu, uvec4(0x7f800000u));
+  v = clamp(v, -65504.0, 65504.0);
   uvec4 bits = floatBitsToUint(v);
   uvec4 normal = (bits + 0xfffu + ((bits >> 13u) & 1u)) & ~0x1fffu;   // 10 bits of mantissa stay
   vec4 tiny = roundEven(v * 16777216.0) * 5.9604644775390625e-8;      // below 2^-14 halves are multiples of 2^-24
-  return mix(uintBitsToFloat(normal), tiny, lessThan(abs(v), vec4(6.103515625e-5)));
+  vec4 rounded = mix(uintBitsToFloat(normal), tiny, lessThan(abs(v), vec4(6.103515625e-5)));
+  return mix(rounded, uintBitsToFloat(uvec4(0x7fc00000u)), nan);
 }
 )";
 
 /// Of a kernel that watches. A NaN or an infinity stays in a sum, whatever a later stage makes of it: no branch, and no
-/// comparison until the end.
+/// look at it until the end. Drivers may take it that no number is a NaN (Vulkan without SignedZeroInfNanPreserve), and
+/// reckon comparisons away: what is asked for are its bits.
 std::string add_light(const std::string& color) { return fmt::format("  ag_light += {0}.r + {0}.g + {0}.b;\n", color); }
 
 /// GLSL's word for a storage image.
@@ -105,7 +108,7 @@ class Assembler {
       row_ += "  ag_color = ag_round_to_half(ag_color);\n";
     }
     if (kernel_.target == KernelTarget::unorm8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
-    if (watches()) row_ += "  bool ag_finite = abs(ag_light) <= 3.4028234e38;\n";
+    if (watches()) row_ += "  bool ag_finite = (floatBitsToUint(ag_light) & 0x7f800000u) != 0x7f800000u;\n";
     if (kernel_.finite_check == FiniteCheck::flag)
       row_ += fmt::format("  ag_color.a {} float(ag_finite);\n", kernel_.target == KernelTarget::unorm8 ? "*=" : "=");
     if (kernel_.finite_check == FiniteCheck::propagate)

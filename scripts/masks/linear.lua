@@ -10,5 +10,9 @@ return fx.effect {
     to = fx.vec2 { min = -10, max = 10, default = { 0.5, 1 }, doc = "Where everything does." },
   },
   active = function(s) return s.from[1] ~= s.to[1] or s.from[2] ~= s.to[2], "from and to are the same point" end,
-  build = function(g, s, source) return g:pass { shader = "mask/linear", source = source, from = s.from, to = s.to } end,
+  build = function(g, s, source)
+    local x, y = (s.to[1] - s.from[1]) * source.width, (s.to[2] - s.from[2]) * source.height
+    local function share(way) return math.max(-1e20, math.min(way / (x * x + y * y), 1e20)) end
+    return g:pass { shader = "mask/linear", source = source, from = s.from, along = { share(x), share(y) } }
+  end,
 }

@@ -438,12 +438,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device(VkDevice device, const char*
 
 VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                                VkInstance* instance) {
-  using Link = VkLayerInstanceCreateInfo;
-  auto* link = chain::link_of<Link, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info->pNext);
-  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
-  next.instance = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateInstance>(next.instance(VK_NULL_HANDLE, "vkCreateInstance"));
+  if (!chain::take_link(*info, next.instance)) return VK_ERROR_INITIALIZATION_FAILED;
+  const auto create = chain::function_of<PFN_vkCreateInstance>(next.instance, VkInstance{}, "vkCreateInstance");
   const VkResult result = create(info, allocator, instance);
   if (result != VK_SUCCESS) return result;
   the_instance = *instance;
@@ -455,14 +451,10 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
 
 VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                              const VkAllocationCallbacks* allocator, VkDevice* device) {
-  using Link = VkLayerDeviceCreateInfo;
-  auto* link = chain::link_of<Link, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info->pNext);
-  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
+  PFN_vkGetInstanceProcAddr below = nullptr;
+  if (!chain::take_link(*info, below, next.device)) return VK_ERROR_INITIALIZATION_FAILED;
   check_age(*info);
-  const auto below = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  next.device = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateDevice>(below(the_instance, "vkCreateDevice"));
+  const auto create = chain::function_of<PFN_vkCreateDevice>(below, the_instance, "vkCreateDevice");
   const VkResult result = create(physical, info, allocator, device);
   if (result != VK_SUCCESS) return result;
 #define LOAD(call) next.call = reinterpret_cast<PFN_vk##call>(next.device(*device, "vk" #call));

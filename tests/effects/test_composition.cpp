@@ -127,6 +127,18 @@ TEST_F(Effects, MasksAgree) {
                 3e-5);
 }
 
+// 100 - 1e-6 is 100 in floats, and points may be closer than floats can tell.
+TEST_F(Effects, MasksHoldTheirEnds) {
+  Scene scene = light();
+  double depth = 98;
+  for (auto& p : scene.depth->pixels) p = Rgba(depth = depth < 202 ? depth + 0.5 : 98);
+  for (const char* mask :
+       {"fx.mask.depth { from = 100, to = 200, softness = 0 }", "fx.mask.depth { from = 100, to = 100, softness = 0 }",
+        "fx.mask.linear { from = { 0.5, 0.5 }, to = { 0.5, 0.50000001 } }",
+        "fx.mask.linear { from = { 0.25, 0.5 }, to = { 0.24999999, 0.5 } }"})
+    expect_true(fmt::format("fx.color_adjustments {{ post_exposure = 1, mask = {} }}", mask), scene, 3e-5);
+}
+
 TEST_F(Effects, MasksAndBlendsOnEveryKindOfEffect) {
   const Scene scene = light({96, 54});
   for (const char* effect : {"fx.bloom { threshold = 0.6, ", "fx.directional_blur { distance = 5, ",

@@ -146,12 +146,9 @@ VkInstance the_instance = VK_NULL_HANDLE;
 
 VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                                VkInstance* instance) {
-  auto* link = chain::link_of<VkLayerInstanceCreateInfo, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info->pNext);
-  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
-  next_instance = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+  if (!chain::take_link(*info, next_instance)) return VK_ERROR_INITIALIZATION_FAILED;
   if (strikes("CreateInstance", kHost | kDevice)) return wanted().result;
-  const auto create = reinterpret_cast<PFN_vkCreateInstance>(next_instance(VK_NULL_HANDLE, "vkCreateInstance"));
+  const auto create = chain::function_of<PFN_vkCreateInstance>(next_instance, VkInstance{}, "vkCreateInstance");
   const VkResult result = create(info, allocator, instance);
   if (result == VK_SUCCESS) the_instance = *instance;
   return result;
@@ -159,13 +156,10 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
 
 VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                              const VkAllocationCallbacks* allocator, VkDevice* device) {
-  auto* link = chain::link_of<VkLayerDeviceCreateInfo, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info->pNext);
-  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
-  const auto next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  next_device = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+  PFN_vkGetInstanceProcAddr next = nullptr;
+  if (!chain::take_link(*info, next, next_device)) return VK_ERROR_INITIALIZATION_FAILED;
   if (strikes("CreateDevice", kHost | kDevice | kLost)) return wanted().result;
-  const auto create = reinterpret_cast<PFN_vkCreateDevice>(next(the_instance, "vkCreateDevice"));
+  const auto create = chain::function_of<PFN_vkCreateDevice>(next, the_instance, "vkCreateDevice");
   const VkResult result = create(physical, info, allocator, device);
   if (result != VK_SUCCESS) return result;
   the_device = *device;
