@@ -19,6 +19,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   AFTERGLOW_CHECK(validate(graph));
   auto state = std::make_unique<State>(device, graph, options);
   state->settle_config();
+  state->settle_workgroups(shaders);
   state->plan = make_plan(graph, state->options.config);
   static std::atomic<std::uint64_t> programs = 0;
   state->serial = ++programs;

@@ -39,6 +39,17 @@ void Program::State::settle_config() {
   config.guard_loops = config.guard_loops && device.stores_from_fragments();
 }
 
+/// Passes that have two ways are drawn where a device is too small for the workgroups of the other.
+void Program::State::settle_workgroups(ShaderLibrary& shaders) {
+  const auto fits = [&](const Pass& pass) {
+    if (pass.by_workgroups.empty()) return true;
+    const auto shader = shaders.find(pass.by_workgroups);
+    const auto* group = shader && (*shader)->interface.workgroup ? &*(*shader)->interface.workgroup : nullptr;
+    return !group || check_workgroup(device, group->invocations, 0, pass.name);
+  };
+  options.config.compute = options.config.compute && std::ranges::all_of(graph.passes, fits);
+}
+
 /// The linear image that a result by rows is.
 ImageDesc Program::State::result_desc() const {
   return {.name = "result",

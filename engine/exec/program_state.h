@@ -89,6 +89,7 @@ struct Program::State {
 
   // program_make.cpp
   void settle_config();
+  void settle_workgroups(ShaderLibrary& shaders);
   Result<void> check();
   Result<void> find_parts();
   Result<std::vector<KernelDesc>> describe(ShaderLibrary& shaders);

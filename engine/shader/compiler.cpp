@@ -23,6 +23,7 @@
 #include "shader/loop_places.h"
 #include "shader/reflect.h"
 #include "shader/spirv_module.h"
+#include "shader/spirv_passes.h"
 #include "shader/weight.h"
 
 namespace afterglow {
@@ -115,6 +116,9 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);
+  if (assembled.workgroup) {
+    AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
+  }
   if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
   if (desc.config.rows > 1 && desc.sample) {
     constexpr double kWorthwhile = 1.25;  // times fewer reads

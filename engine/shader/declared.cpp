@@ -104,7 +104,25 @@ void out_arguments(Tokens tokens, std::size_t at, std::vector<Unset>& out) {
   end();
 }
 
+/// `body`: from the first brace to the last.
+bool ends_with_return(Tokens body) {
+  if (body.size() < 3 || !body[body.size() - 2]->is(";")) return false;
+  std::size_t begin = body.size() - 2;
+  for (int depth = 0; begin > 1; --begin) {
+    const Token& before = *body[begin - 1];
+    if (depth == 0 && (before.is(";") || before.is("{") || before.is("}"))) break;
+    if (closes(before)) ++depth;
+    if (opens(before)) --depth;
+  }
+  return body[begin]->is("return");
+}
+
 }  // namespace
+
+void find_unset_result(const Token& type, const Token& name, Tokens body, std::vector<Unset>& out) {
+  if (!type.is_identifier() || type.is("void") || body.empty() || ends_with_return(body)) return;
+  out.push_back({std::string(name.text), name.line, Unset::Kind::result, body.back()->offset, std::string(type.text)});
+}
 
 void find_unset(Tokens arguments, Tokens body, std::vector<Unset>& out) {
   if (body.empty()) return;

@@ -269,6 +269,10 @@ std::string give_value_text(std::size_t number, const std::string& variable) {
   return fmt::format(" {} = {}; {} = {};", kMark, number, variable, variable);
 }
 
+std::string give_result_text(std::size_t number, const std::string& type) {
+  return fmt::format(" {} ag_result;{} return ag_result; ", type, give_value_text(number, "ag_result"));
+}
+
 ValuesGiven give_values(std::vector<std::uint32_t> spirv, const std::vector<AssembledKernel::UnsetVariable>& unset) {
   auto module = parse(spirv);
   if (!module) return {std::move(spirv), {}};
@@ -280,9 +284,12 @@ ValuesGiven give_values(std::vector<std::uint32_t> spirv, const std::vector<Asse
 }
 
 std::string unset_warning(const AssembledKernel::UnsetVariable& unset) {
-  return fmt::format("{}:{}: '{}' {}", unset.file, unset.line, unset.name,
-                     unset.argument ? "may leave its function without a value; it is 0 then"
-                                    : "may be read before it has a value; it is 0 there");
+  const char* const what = unset.role == AssembledKernel::UnsetVariable::Role::argument
+                               ? "may leave its function without a value; it is 0 then"
+                           : unset.role == AssembledKernel::UnsetVariable::Role::result
+                               ? "may end without a return; it gives 0 then"
+                               : "may be read before it has a value; it is 0 there";
+  return fmt::format("{}:{}: '{}' {}", unset.file, unset.line, unset.name, what);
 }
 
 }  // namespace afterglow

@@ -17,6 +17,9 @@ std::string give_value_header();
 /// The mark that gives `variable` a value; `number` is its index in AssembledKernel::unset.
 std::string give_value_text(std::size_t number, const std::string& variable);
 
+/// The same for what a function returns that ends without a `return`, before its last brace.
+std::string give_result_text(std::size_t number, const std::string& type);
+
 struct ValuesGiven {
   std::vector<std::uint32_t> spirv;
   std::vector<std::uint32_t> read;  ///< numbers of those that may be read before they are written, in order

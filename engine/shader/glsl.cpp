@@ -10,6 +10,7 @@
 #include <charconv>
 #include <mutex>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "core/text.h"
@@ -88,6 +89,36 @@ Error compile_error(const char* log, const std::vector<std::string>& file_names)
   return error;
 }
 
+/// Where a name first stands with a parenthesis behind it, by the #line directives of the text.
+LogLine first_place(const std::string& glsl, const std::string& name) {
+  LogLine place;
+  for (const auto& text : split(glsl, '\n')) {
+    if (text.starts_with("#line ")) {
+      std::istringstream numbers(text.substr(std::string_view("#line ").size()));
+      numbers >> place.line >> place.file;
+      continue;
+    }
+    if (text.find(" " + name + "(") != std::string::npos) return place;
+    ++place.line;
+  }
+  return {};
+}
+
+/// "Linking fragment stage: Recursion detected:" and then "    f(vf4; calling g(vf4;", without a place.
+std::optional<Error> recursion_error(const std::string& log, const std::string& glsl,
+                                     const std::vector<std::string>& file_names) {
+  constexpr std::string_view kCalling = "; calling ";
+  const auto found = log.find("Recursion detected:"), calls = log.find(kCalling, found);
+  if (found == std::string::npos || calls == std::string::npos) return std::nullopt;
+  const auto until_parenthesis = [&](std::size_t from) { return trim(log.substr(from, log.find('(', from) - from)); };
+  const std::string caller = until_parenthesis(log.find('\n', found)),
+                    called = until_parenthesis(calls + kCalling.size());
+  const LogLine place = first_place(glsl, caller);
+  const std::string by = called == caller ? "" : fmt::format(" by way of '{}'", original_names(called));
+  return shader_error(place.file < file_names.size() ? file_names[place.file] : std::string(), place.line,
+                      fmt::format("'{}' calls itself{}: GLSL has no recursion", original_names(caller), by));
+}
+
 bool parse(glslang::TShader& shader, EShLanguage language, const std::string& glsl, EShMessages rules) {
   const char* text = glsl.data();
   const int length = static_cast<int>(glsl.size());
@@ -125,7 +156,10 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   }
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(rules)) return compile_error(program.getInfoLog(), file_names);
+  if (!program.link(rules)) {
+    if (auto recursion = recursion_error(program.getInfoLog(), glsl, file_names)) return *std::move(recursion);
+    return compile_error(program.getInfoLog(), file_names);
+  }
 
   glslang::SpvOptions options;
   options.disableOptimizer = true;  // no gain was seen on lavapipe, and it takes longer than the compilation

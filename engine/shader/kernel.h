@@ -131,13 +131,15 @@ struct AssembledKernel {
   std::vector<ImageSlot> images;
   std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)
   std::vector<std::string> file_names;  ///< index used in #line directives → file path; [0] is the engine's own text
-  /// A variable that authors declare without a value. It gets zeros.
+  /// A variable that authors declare without a value, or the result of a function that may have none. It gets zeros.
   struct UnsetVariable {
+    /// `argument`: an `out` one that its function may leave as it is.
+    enum class Role { variable, argument, result };
     std::string name;      ///< as in the file
     std::string variable;  ///< of file scope: its name in `glsl`; else empty
     std::string file;
     int line = 0;
-    bool argument = false;  ///< an `out` argument that its function may leave as it is
+    Role role = Role::variable;
   };
   std::vector<UnsetVariable> unset;
   std::optional<Workgroup> workgroup;  ///< of a compute shader

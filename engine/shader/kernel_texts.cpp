@@ -7,6 +7,14 @@
 #include <utility>
 
 namespace afterglow {
+namespace {
+
+AssembledKernel::UnsetVariable::Role role_of(Unset::Kind kind) {
+  using Role = AssembledKernel::UnsetVariable::Role;
+  return kind == Unset::Kind::argument ? Role::argument : kind == Unset::Kind::result ? Role::result : Role::variable;
+}
+
+}  // namespace
 
 Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scanned, const std::string& prefix,
                               const std::vector<std::string>& constants, const StorageReaders& readers) {
@@ -84,7 +92,7 @@ std::size_t KernelTexts::add_unset(const ShaderScan& scanned, const std::filesys
   const std::size_t first = unset_.size();
   for (const auto& unset : scanned.unset)
     unset_.push_back({unset.name, unset.kind == Unset::Kind::global ? prefix + unset.name : std::string(),
-                      file.string(), unset.line, unset.kind == Unset::Kind::argument});
+                      file.string(), unset.line, role_of(unset.kind)});
   return first;
 }
 

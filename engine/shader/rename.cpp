@@ -78,9 +78,13 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
       if (edit->constant >= 0) out += constants[static_cast<std::size_t>(edit->constant)];
       if (edit->unset >= 0) {
         const auto index = static_cast<std::size_t>(edit->unset);
-        const std::string& name = scanned.unset[index].name;
-        const auto known = names.find(name);
-        out += give_value_text(first_unset + index, known == names.end() ? name : known->second.text);
+        const Unset& unset = scanned.unset[index];
+        const auto renamed = [&](const std::string& name) {
+          const auto known = names.find(name);
+          return known == names.end() ? name : known->second.text;
+        };
+        out += unset.kind == Unset::Kind::result ? give_result_text(first_unset + index, renamed(unset.type))
+                                                 : give_value_text(first_unset + index, renamed(unset.name));
       }
       out += only_newlines(text.substr(edit->begin, edit->end - edit->begin));
       copied = edit->end;

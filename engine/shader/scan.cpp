@@ -348,9 +348,11 @@ class ShaderScanner {
     const std::size_t arguments_end = at_ - 1;
     const std::size_t begin = at_;
     at_ = body ? after_closing(at_) : at_ + 1;
-    if (body)
-      find_unset(std::span(code_).subspan(arguments + 1, arguments_end - arguments - 1),
-                 std::span(code_).subspan(begin, at_ - begin), out_.unset);
+    if (body) {
+      const auto statements = std::span(code_).subspan(begin, at_ - begin);
+      find_unset(std::span(code_).subspan(arguments + 1, arguments_end - arguments - 1), statements, out_.unset);
+      find_unset_result(result, name, statements, out_.unset);
+    }
     if (name.is("main")) return fail(name, "main is made by the engine; define one of " + entry_signatures());
     if (is_builtin_function(name.text))
       return fail(name, fmt::format("'{}' is a built-in function of GLSL; choose another name", name.text));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/saturated.h"
@@ -78,6 +79,20 @@ std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Mod
   Words after;
   if (!optimizer.Run(before.data(), before.size(), &after, options)) return std::nullopt;
   return parse(after);
+}
+
+Result<Words> with_held_indices(const Words& spirv) {
+  spvtools::Optimizer optimizer(kSpirvEnvironment);
+  std::string fault;
+  optimizer.SetMessageConsumer(
+      [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { fault = text; });
+  optimizer.RegisterPass(spvtools::CreateGraphicsRobustAccessPass());
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);
+  Words out;
+  if (!optimizer.Run(spirv.data(), spirv.size(), &out, options))
+    return Error{ErrorKind::other, "indices cannot be held within their arrays: " + fault};
+  return out;
 }
 
 std::optional<Module> without_variables(const Module& module) {

@@ -7,6 +7,7 @@
 #include <spirv-tools/optimizer.hpp>
 #include <string_view>
 
+#include "core/result.h"
 #include "shader/spirv_module.h"
 
 namespace afterglow {
@@ -30,6 +31,10 @@ bool inlines_quickly(const Module& module);
 
 /// Nothing when a pass fails.
 std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Module& module);
+
+/// Every index is held within its array, as robustBufferAccess says of buffers: what a driver for CPUs takes from
+/// memory that workgroups share lies within the process. Errors: other (no module of GLSL's memory model).
+Result<Words> with_held_indices(const Words& spirv);
 
 /// Values in place of functions, their arguments and variables, and blocks without those that are never entered.
 /// Nothing when that would take too long, or a pass fails.

@@ -98,6 +98,8 @@ void imitate(VkPhysicalDeviceProperties& properties) {
   limits.maxPerStageDescriptorUniformBuffers = 12;
   limits.maxPerStageDescriptorStorageImages = limits.maxPerStageDescriptorStorageBuffers = 4;
   limits.maxPerStageResources = 128;
+  limits.maxComputeWorkGroupInvocations = limits.maxComputeWorkGroupSize[0] = limits.maxComputeWorkGroupSize[1] = 128;
+  limits.maxComputeSharedMemorySize = 16384;
   limits.maxColorAttachments = limits.maxFragmentOutputAttachments = 4;
   limits.minMemoryMapAlignment = 64;
   limits.minUniformBufferOffsetAlignment = limits.minStorageBufferOffsetAlignment = 256;

@@ -104,6 +104,25 @@ TEST_F(ImitatedGpu, HistoriesRegionsLayersAndDisplayFiles) {
   done({"run", "look.lua", "in/a.0001.exr", "-o", "reference.jpg", "--reference"});
 }
 
+/// It has 128 invocations a workgroup: of two ways it takes the one that it can.
+TEST_F(ImitatedGpu, PassesWhoseWorkgroupsAreTooLargeAreDrawn) {
+  make_exr("a.exr");
+  write("effects/most.lua", R"(local fx = require "afterglow"
+return fx.effect { name = "most", doc = "Times two.", at = "post_process", order = 50,
+  build = function(g, s, source) return g:pass { shader = "most/one", compute = "most/many", source = source, size = source } end }
+)");
+  write("shaders/most/one.glsl",
+        "uniform sampler2D source;\nvec4 sample_at(ivec2 pixel) { return fetch(source, pixel) * 2.0; }\n");
+  write("shaders/most/many.glsl",
+        "layout(local_size_x = 16, local_size_y = 16) in;\nuniform sampler2D source;\n"
+        "vec4 compute_at(ivec2 pixel) { return fetch(source, pixel) * 2.0; }\n");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.most {}, fx.bloom { threshold = 0.5 } }\n");
+  done({"run", "look.lua", "a.exr", "-o", "gpu.exr", "--calibration", table_of("fused fp32 compute"), "--type",
+        "float"});
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "cpu.exr", "--type", "float"}).exit_code, kDone);
+  expect_near("gpu.exr", "cpu.exr", 1e-5);
+}
+
 /// Its timestamps run over at the first pass.
 TEST_F(ImitatedGpu, TimesOfPassesAreTimes) {
   make_exr("a.exr");

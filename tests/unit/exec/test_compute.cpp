@@ -227,6 +227,32 @@ vec4 compute_at(ivec2 pixel) {
   EXPECT_EQ(run(graph, {{"source", {pixels.data(), size, 4}}}).pixels, pixels);
 }
 
+/// Too far in memory that is shared lies something else of the process.
+TEST_F(Compute, IndicesStayWithinSharedArrays) {
+  shader("test/far", R"(layout(local_size_x = 16, local_size_y = 8) in;
+uniform sampler2D source;
+shared vec4 kept[16];
+shared uint count[4];
+vec4 compute_at(ivec2 pixel) {
+  int far = int(fetch(source, pixel).r) * 1000003;
+  kept[gl_LocalInvocationIndex] = vec4(1.0);
+  kept[far] = vec4(1.0);
+  kept[-far] = vec4(1.0);
+  atomicAdd(count[far], 1u);
+  barrier();
+  return kept[far * 7] + kept[gl_LocalInvocationIndex];
+}
+)");
+  const Size size{40, 19};
+  const std::vector<float> pixels(static_cast<std::size_t>(size.area()) * 4, 5);
+  GraphBuilder b(size);
+  const ImageId far = b.sample("far", "test/far", size, {{"source", b.source()}});
+  Graph graph = b.finish(b.filter("copy", far, size, {.interpolation = Interpolation::nearest}));
+  graph.passes[0].kind = PassKind::compute;
+  const auto result = run(graph, {{"source", {pixels.data(), size, 4}}}).pixels;
+  EXPECT_EQ(result, std::vector<float>(result.size(), 2));
+}
+
 TEST_F(Compute, DivisionsByZeroKeepTheirIeeeValues) {
   shader("divide", R"(layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2D source;

@@ -233,6 +233,25 @@ TEST_F(KernelCache, FailuresAreNotCached) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
+TEST(KernelCompiler, RecursionIsToldWithItsPlace) {
+  const ShaderFiles files;
+  KernelCompiler compiler({});
+  const auto told = [&](const std::string& shader) {
+    KernelDesc desc;
+    desc.stages = {files.stage("test/again", shader)};
+    const auto kernel = compiler.compile(desc);
+    EXPECT_FALSE(kernel) << shader;
+    return kernel ? std::string() : kernel.error().text();
+  };
+  const std::string file = files.path("test/again.glsl").string();
+  EXPECT_EQ(told("\nfloat f(float x) { return x > 1.0 ? f(x - 1.0) : x; }\nvec4 apply(vec4 color) { return color * "
+                 "f(2.0); }\n"),
+            file + ":2: error: 'f' calls itself: GLSL has no recursion");
+  EXPECT_EQ(told("float g(float x);\nfloat f(float x) { return g(x); }\nfloat g(float x) { return f(x); }\n"
+                 "vec4 apply(vec4 color) { return color * f(2.0); }\n"),
+            file + ":2: error: 'f' calls itself by way of 'g': GLSL has no recursion");
+}
+
 TEST(KernelCompiler, EveryErrorOfAShaderIsToldOnce) {
   ShaderFiles files;
   const auto bad = files.stage("t/bad", "vec4 apply(vec4 c) {\n  c.r = d;\n  c.g = e;\n  c.b = f;\n  return c;\n}\n");

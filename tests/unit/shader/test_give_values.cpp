@@ -147,6 +147,33 @@ TEST(GiveValues, OutArguments) {
   EXPECT_THAT(one.pixel, ElementsAre(2.f, 0.f, 0.f, 0.5f));
 }
 
+TEST(GiveValues, FunctionsThatEndWithoutAReturn) {
+  const std::string gives_0 = "' may end without a return; it gives 0 then";
+  for (const int rows : {1, 8}) {
+    const Made one = made("vec4 apply(vec4 color) {\n  if (color.r > 0.7) return color;\n}\n", rows);
+    EXPECT_THAT(one.warnings, ElementsAre("1: 'apply" + gives_0));
+    EXPECT_THAT(one.pixel, ElementsAre(0.f, 0.f, 0.f, 0.f));
+  }
+  const Made other = made(
+      "struct Two { vec2 a; float b; };\n\nTwo two(float x) {\n  for (int i = 0; i < 3; ++i)\n"
+      "    if (x * float(i) > 3.0) return Two(vec2(x), 1.0);\n}\n"
+      "vec4 apply(vec4 color) { return vec4(two(color.b).a, two(color.r).a); }\n");
+  EXPECT_THAT(other.warnings, ElementsAre("3: 'two" + gives_0));
+  EXPECT_THAT(other.pixel, ElementsAre(2.f, 2.f, 0.f, 0.f));
+}
+
+TEST(GiveValues, EndsThatNobodyReachesAreNotTold) {
+  for (const char* body :
+       {"if (color.r > 0.7) return color; else return color;",
+        "if (color.r > 0.7) { return color; } else if (color.g > 0.5) { return color; } else { return color; }",
+        "switch (int(color.r)) { case 0: return color; default: return color; }", "for (;;) return color;",
+        "{ return color; }", "if (color.r < 0.7) { float x = color.r; } return color;"}) {
+    const Made one = made(std::string("vec4 apply(vec4 color) { ") + body + " }\n");
+    EXPECT_THAT(one.warnings, IsEmpty()) << body;
+    EXPECT_THAT(one.pixel, ElementsAre(0.5f, 0.25f, 2.f, 1.f)) << body;
+  }
+}
+
 TEST(GiveValues, VariablesOfTheFile) {
   for (const int rows : {1, 8}) {
     const Made one = made(
