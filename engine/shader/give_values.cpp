@@ -242,7 +242,9 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
     std::iota(all.begin(), all.end(), 0u);
     return all;
   }
+  // Functions with several returns are not inlined; what they write is not seen then.
   spvtools::Optimizer optimizer(kSpirvEnvironment);
+  optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass()).RegisterPass(spvtools::CreateMergeReturnPass());
   add_inlining_passes(optimizer);
   optimizer.RegisterPass(spvtools::CreateSSARewritePass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())

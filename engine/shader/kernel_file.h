@@ -13,7 +13,7 @@
 namespace afterglow {
 
 /// Raise when the bytes, the meaning of offsets or the way of compiling change.
-inline constexpr std::uint32_t kKernelFileVersion = 9;
+inline constexpr std::uint32_t kKernelFileVersion = 10;
 
 struct KernelFile {
   Hash text;  ///< of the assembled GLSL it was made from
