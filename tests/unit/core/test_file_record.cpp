@@ -117,6 +117,17 @@ TEST_F(Record, KnowsLargeFilesByTheirStamps) {
   EXPECT_EQ(first_changed(looks), folder_ / "large");
 }
 
+TEST_F(Record, FilesHaveTheHashOfTheirContent) {
+  for (const std::size_t size : {0u, 1u, 65536u, 65537u, 300000u}) {
+    std::string text(size, 'x');
+    if (size > 0) text.back() = 'y';
+    write("a", text);
+    EXPECT_EQ(hash_file(folder_ / "a").value(), hash_text(text)) << size;
+  }
+  EXPECT_FALSE(hash_file(folder_).ok());
+  EXPECT_FALSE(hash_file(folder_ / "missing").ok());
+}
+
 TEST_F(Record, ListsFolders) {
   const auto looks = noted([&](FileRecord& record) { record.note(folder_ / "packs", FileProbe::Kind::listing); });
   EXPECT_FALSE(first_changed(looks));
