@@ -61,8 +61,8 @@ Result<void> check_streams(const FrameListRequest& files) {
   return {};
 }
 
-Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, const farm::LoadedLook& look,
-                  farm::Job& job, Console& console) {
+Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, const std::vector<FrameJob>& frames,
+                  const farm::LoadedLook& look, farm::Job& job, Console& console) {
   AFTERGLOW_CHECK(farm::pack_look(look, job));
   const fs::path shipped = find_installation() / "calibration" / "devices.json";
   const std::string& given = arguments.run.execution.calibration;
@@ -71,12 +71,15 @@ Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, c
   job.run = arguments.packed_words(request.preset, job.folder);
   if (!arguments.run.fps && !job.video.empty())  // the same for every chunk, whose first picture is another
     job.run.insert(job.run.begin(), fmt::format("--fps={}", request.loop.fps));
+  job.environment = look.environment;
   job.environment["AFTERGLOW_PATH"] = "";
+  if (const char* home = std::getenv("AFTERGLOW_HOME"); home && *home)
+    job.environment["AFTERGLOW_HOME"] = fs::absolute(home).lexically_normal().string();
   if (const char* config = std::getenv("OCIO"); config && is_file(farm::packed_place(job.folder, config)))
     job.environment["OCIO"] = farm::packed_place(job.folder, config).string();
   unsetenv("AFTERGLOW_PATH");  // its folders are among the words
   AFTERGLOW_TRY(const BatchRequest packed, request_of_words(job.run));
-  AFTERGLOW_CHECK(farm::lock_packed_look(packed, arguments.run.locked, job, console.diagnostics()));
+  AFTERGLOW_CHECK(farm::lock_packed_look(packed, frames, arguments.run.locked, job, console.diagnostics()));
   AFTERGLOW_CHECK(write_file_atomically(job.folder / "task.sh", farm::task_script(job)));
   return farm::write_job(job);
 }
@@ -116,7 +119,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   AFTERGLOW_CHECK(make_folder(out.new_folder));
   AFTERGLOW_TRY(job.folder, farm::make_job_folder(outputs));
   job.id = job.folder.filename().string();
-  const auto packed = pack(arguments, request, look, job, console);
+  const auto packed = pack(arguments, request, out.frames, look, job, console);
   if (packed) return out;
   discard(out);
   return packed.error();

@@ -72,7 +72,8 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::Range(0, 100000))
       ->type_name("N")
       ->group(sequence);
-  app.add_flag("--resume", a.resume, "Skip outputs that are newer than their inputs and made by the same look")
+  app.add_flag("--resume", a.resume,
+               "Skip outputs that are as they were left, and made by the same look of the same inputs")
       ->group(sequence);
   app.add_flag("--watch", a.watch,
                "Inputs may still be written: run frames as they appear whole, again when they change, until all of "

@@ -30,7 +30,7 @@ struct BatchRun {
   std::unique_ptr<FrameSink> sink{};
   std::unique_ptr<Session> session{};
   FrameList list{};
-  std::optional<Hash> record_look{};
+  std::optional<FrameNotes> notes{};
   std::optional<Lock> lock{};  ///< of what runs, when one is to be written or held against
 
   double milliseconds() const { return milliseconds_since(start); }
@@ -80,26 +80,34 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
   return most;
 }
 
-/// The graph of frames as they usually are.
-Result<Graph> usual_graph(BatchRun& run) {
-  AFTERGLOW_TRY(const auto build, run.session->evaluate(usual_frame(run, 1)));
-  return build->graph;
+/// What the look is made of in these frames.
+Result<Inventory> inventory_of(BatchRun& run, std::size_t frames) {
+  std::vector<const FrameJob*> jobs;
+  for (std::size_t i = 0; i < std::min(frames, run.report.frames.size()); ++i)
+    jobs.push_back(&run.report.frames[i].job);
+  Preset& preset = run.session->preset();
+  return take_inventory(preset, usual_contexts(preset, jobs, run.request.loop.fps), run.events.diagnostics);
 }
 
-/// Hash of the look for `resume`, and the frames that need not be made.
-Result<void> prepare_resume(BatchRun& run) {
+bool takes_notes(const BatchRun& run) {
+  return !run.sink->is_one() && (run.request.resume || run.report.frames.size() > 1);
+}
+
+/// What frames are noted to be made of, and for `resume` those that need not be made.
+Result<void> prepare_notes(BatchRun& run) {
   const BatchRequest& asked = run.request;
-  if (!asked.resume && run.report.frames.size() < 2) return {};
-  AFTERGLOW_TRY(const Graph graph, usual_graph(run));
+  if (!takes_notes(run)) return {};
+  AFTERGLOW_TRY(const Inventory inventory, inventory_of(run, 1));
   const std::string options =
       options_text(asked.pixel_options) + execution_name(run.session->stack().choice().execution);
-  AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
-  run.record_look = look;
+  Preset& preset = run.session->preset();
+  AFTERGLOW_TRY(const Hash look, look_hash(preset, inventory, options));
+  run.notes.emplace(look, preset.path());
   if (!asked.resume) return {};
   if (const int left = remove_leftovers(run.report.frames))
     run.events.note(fmt::format("removed {} half-written files of runs that were killed", left));
   for (auto& frame : run.report.frames)
-    if (is_up_to_date(frame.job, look)) {
+    if (run.notes->is_up_to_date(frame.job)) {
       frame.state = FrameRecord::State::up_to_date;
       run.events.note(fmt::format("{} is up to date", frame.job.output.string()));
     }
@@ -110,8 +118,8 @@ Result<void> prepare_resume(BatchRun& run) {
 Result<void> prepare_lock(BatchRun& run) {
   const BatchRequest& asked = run.request;
   if (asked.lock.empty() && asked.locked.empty()) return {};
-  AFTERGLOW_TRY(const Graph graph, usual_graph(run));
-  AFTERGLOW_TRY(run.lock, lock_of(*run.session, graph, asked.pixel_options));
+  AFTERGLOW_TRY(const Inventory inventory, inventory_of(run, run.report.frames.size()));
+  AFTERGLOW_TRY(run.lock, lock_of(*run.session, inventory, asked.pixel_options));
   if (asked.locked.empty()) return {};
   AFTERGLOW_TRY(const Lock locked, read_lock(asked.locked));
   return hold_against(locked, *run.lock, asked.locked, run.events.diagnostics);
@@ -159,9 +167,9 @@ Result<void> run_frames(BatchRun& run) {
   FrameLoop loop(*run.session, *run.sink, options, run.events);
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));
   if (earlier) loop.follow_histories();
-  if (earlier && asked.resume) note_earlier_files(frames, asked.files, *earlier);
-  AFTERGLOW_CHECK(prepare_resume(run));
-  if (run.record_look) run.sink->record_look(*run.record_look);
+  if (earlier && takes_notes(run)) note_earlier_files(frames, asked.files, *earlier);
+  AFTERGLOW_CHECK(prepare_notes(run));
+  if (run.notes) loop.note_frames(*run.notes);
   const auto run_waiting = [&]() -> Result<void> {
     Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
     if (run.list.more) schedule.more = [&run] { return next_record(run); };

@@ -25,7 +25,7 @@ struct BatchRequest {
   FrameLoopOptions loop;    ///< auxiliary inputs, the colour space of inputs, histories and notes are found by the run
   std::string input_space;  ///< colour space of the pictures; empty: that of the stack
   std::optional<int> pre_roll;   ///< earlier frames for effects that look back; empty: as many as they ask for
-  bool resume = false;           ///< outputs that are newer than their inputs and made by the same look are kept
+  bool resume = false;           ///< outputs that were made by the same look of the same inputs are kept: see resume.h
   bool watch = false;            ///< inputs may still be written: frames run as they appear whole, and as they change
   PixelOptions pixel_options;    ///< everything besides the preset that changes pixels, for locks and `resume`
   std::filesystem::path lock;    ///< where to write what the run was made with; empty: nowhere

@@ -30,6 +30,7 @@ struct FrameJob {
   bool passing = false;                          ///< from a stream: its pixels go when it is done
   std::size_t missing = 0;                       ///< frames before it that are not there; a video holds their places
   std::vector<std::filesystem::path> earlier{};  ///< files of earlier frames that the output depends on
+  std::string made_of{};                         ///< what is noted behind the output, see resume.h; empty: nothing
 
   /// Every file that the output is made from.
   std::vector<std::filesystem::path> sources() const;

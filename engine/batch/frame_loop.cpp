@@ -29,6 +29,7 @@ struct FrameLoop::Reading {
   bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
   std::optional<Scaling> scaling;
+  Hash inputs{};           ///< FrameNotes::inputs_of, before any of them was read
   FrameRequest request{};  ///< its region: of the picture, when a part of the display window is wanted
   ReadOptions options;
   std::future<Result<Picture>> picture;
@@ -185,6 +186,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   const bool follows = options_.histories && begun_;
   const double step = follows ? frame.job.frame - *begun_ : 1;
   const auto planning = Clock::now();
+  if (notes_) reading->inputs = FrameNotes::inputs_of(frame.job);
   const bool known = planned_ && planned_->job == &frame.job && step == 1;
   auto planned = known ? Result<PlannedFrame>(*std::exchange(planned_, std::nullopt))
                        : planner_.plan(frame.job, step, options_.histories && !begun_);
@@ -236,6 +238,7 @@ Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
   auto picture = reading->picture.get();
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
   if (events_.interrupted()) return interruption();
+  if (notes_) frame.job.made_of = notes_->text(reading->inputs, reading->request.build->depends);
   frame.size = picture->color.size();
   frame.non_finite.input = picture->non_finite;
   if (const auto begun = begin(*reading, std::move(*picture)); !begun) return failed(*reading, begun.error());

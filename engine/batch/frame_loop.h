@@ -12,6 +12,7 @@
 #include "batch/frame_plan.h"
 #include "batch/frame_sink.h"
 #include "batch/non_finite_record.h"
+#include "batch/resume.h"
 #include "batch/run_events.h"
 #include "batch/run_report.h"
 #include "batch/schedule.h"
@@ -38,6 +39,8 @@ class FrameLoop {
   Result<std::shared_ptr<const Build>> inspect(const FrameJob& job);
   /// Pictures depend on the frames before them: see FrameLoopOptions.
   void follow_histories() { options_.histories = true; }
+  /// Each frame gets its FrameJob::made_of. `notes` outlives the loop.
+  void note_frames(FrameNotes& notes) { notes_ = &notes; }
   /// Pictures are those of a display's view: Picture::view.
   void show_view() { options_.view = true; }
 
@@ -68,6 +71,7 @@ class FrameLoop {
 
   Session& session_;
   FrameSink& sink_;
+  FrameNotes* notes_ = nullptr;  ///< null: none are wanted
   FrameLoopOptions options_;
   RunEvents events_;
   FramePlanner planner_;

@@ -31,19 +31,17 @@ class FileSink : public FrameSink {
   Result<void> write(const FrameJob& job, std::size_t, const Picture& picture, const Turn&) override {
     AFTERGLOW_CHECK(make_folder(folder_));
     AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
-    return look_ ? record_made(job, *look_) : Result<void>();
+    return record_made(job);
   }
   std::uint64_t bytes_of_frame(const FrameJob& job, Size size, bool has_alpha, const FileFacts* facts) const override {
     return write_bytes(job.output, options_, size, has_alpha, facts);
   }
-  void record_look(const Hash& look) override { look_ = look; }
 
  private:
   WorkMemory memory_;
   WriteOptions options_;
   std::filesystem::path folder_;  ///< that is made for them, or empty
   Diagnostics& diagnostics_;
-  std::optional<Hash> look_;
 };
 
 /// An option that was given and that only videos take; empty: none. A stream may be a video without a file.

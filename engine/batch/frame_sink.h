@@ -44,8 +44,6 @@ class FrameSink {
   /// All that can come has come, of so many frames that were asked for (0: of those that came): what was written
   /// appears. Without this call it goes.
   virtual Result<void> finish(std::size_t /*frames*/) { return {}; }
-  /// What the look is, for notes that --resume reads.
-  virtual void record_look(const Hash&) {}
 };
 
 /// For the output of `files`, into which so many frames are known to go. Errors: usage (options that do not go with

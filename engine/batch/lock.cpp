@@ -9,57 +9,32 @@
 
 #include "core/file.h"
 #include "core/json_text.h"
-#include "core/text.h"
 #include "core/version.h"
+#include "image/ocio.h"
 #include "shader/execution_config.h"
 #include "shader/kernel.h"
-#include "shader/library.h"
 
 namespace afterglow {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using LockTable = std::map<std::string, std::string>;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
-/// The same on every machine: relative to the folder of the search path that holds it.
-std::string portable_name(const fs::path& file, const SearchPath& path) {
-  std::error_code ec;
-  const fs::path whole = fs::weakly_canonical(file, ec);
-  const auto below = [&](const fs::path& folder) -> std::string {
-    if (folder.empty()) return {};
-    const fs::path relative = whole.lexically_relative(fs::weakly_canonical(folder, ec));
-    return relative.empty() || *relative.begin() == ".." ? std::string() : relative.generic_string();
-  };
-  for (const auto& folder : path.user)
-    if (const std::string name = below(folder); !name.empty()) return name;
-  if (const std::string name = below(path.installation); !name.empty()) return "installation: " + name;
-  return whole.generic_string();
-}
-
-/// Every file that the look is made of.
-Result<std::set<fs::path>> files_of(const Preset& preset, const Graph& graph) {
-  std::set<fs::path> files(preset.files().begin(), preset.files().end());
-  ShaderLibrary shaders(preset.path());
-  std::vector<std::string> names;
-  for (const auto& pass : graph.passes)
-    for (auto& name : shaders_of(pass)) names.push_back(std::move(name));
-  for (const auto& name : names) {
-    AFTERGLOW_TRY(const auto shader, shaders.find(name));
-    for (const auto& file : shader->files()) files.insert(file);
+/// Hashes by names that are the same on every machine.
+Result<LockTable> hashes_of(const std::map<std::string, fs::path>& files) {
+  LockTable out;
+  for (const auto& [name, file] : files) {
+    AFTERGLOW_TRY(const Hash hash, hash_file(file));
+    out[name] = hash.hex();
   }
-  // Other frames may have other passes: then all shaders of these effects' folders count.
-  if (preset.may_change())
-    for (const auto& name : shaders.names())
-      if (const auto shader = shaders.find(name))
-        for (const auto& file : (*shader)->files()) files.insert(file);
-  return files;
+  return out;
 }
 
 /// "a.lua has changed, b.glsl is gone": what differs between two tables, in order.
-std::vector<std::string> differences(const std::map<std::string, std::string>& locked,
-                                     const std::map<std::string, std::string>& now, bool values) {
+std::vector<std::string> differences(const LockTable& locked, const LockTable& now, bool values) {
   std::vector<std::string> out;
   for (const auto& [name, value] : locked) {
     const auto found = now.find(name);
@@ -75,30 +50,58 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& l
   return out;
 }
 
+/// Those of `locked` that `now` has too: frames that were not asked about use the rest.
+LockTable used_now(const LockTable& locked, const LockTable& now) {
+  LockTable out;
+  for (const auto& [name, value] : locked)
+    if (now.contains(name)) out.emplace(name, value);
+  return out;
+}
+
+/// As far as a lock of version 1 could say it: it knew the files of frame 1 alone, and no variables.
+Lock in_version_1(Lock now, const Lock& locked, const fs::path& file, Diagnostics& diagnostics) {
+  bool more = !now.environment.empty();
+  for (auto& [name, hash] : now.frame_files)
+    if (locked.files.contains(name))
+      now.files[name] = hash;
+    else
+      more = true;
+  for (LockTable* unknown : {&now.frame_files, &now.environment, &now.generated}) unknown->clear();
+  if (more)
+    diagnostics.warn(
+        fmt::format("{}: a lock of version 1 knows no files of other frames than the first and no variables "
+                    "of the environment; a new --lock does",
+                    file.string()));
+  return now;
+}
+
 Error not_a_lock(const fs::path& file, const std::string& why) {
   return {ErrorKind::io, fmt::format("this is no lock: {}", why), file.string(), 0, "a file written by --lock"};
 }
 
 }  // namespace
 
-Result<Lock> look_lock(const Preset& preset, const fs::path& file_of_preset, const Graph& graph,
+Result<Lock> look_lock(const Preset& preset, const fs::path& file_of_preset, const Inventory& inventory,
                        const PixelOptions& options) {
   Lock lock;
   lock.preset = file_of_preset.filename().string();
-  AFTERGLOW_TRY(const auto files, files_of(preset, graph));
-  for (const auto& file : files) {
-    AFTERGLOW_TRY(const std::string text, read_file(file));
-    lock.files[portable_name(file, preset.path())] = hash_text(text).hex();
-  }
+  const PortableNames names(preset.path());
+  std::set<fs::path> files = inventory.sources, of_frames;
+  for (const auto& [file, name] : inventory.depends.files) (inventory.moves ? of_frames : files).insert(file);
+  AFTERGLOW_TRY(lock.files, hashes_of(names.of(files)));
+  AFTERGLOW_TRY(lock.frame_files, hashes_of(names.of(of_frames)));
+  lock.environment = inventory.depends.environment;
+  for (const auto& [name, hash] : inventory.depends.generated) lock.generated[name] = hash.hex();
   for (const auto& [name, value] : options)
     if (!value.empty()) lock.options[name] = value;
   lock.made_with = {{"afterglow", version()}, {"shader compiler", glsl_compiler_version()}};
+  if (!lock.generated.empty()) lock.made_with["OpenColorIO"] = ocio_version();
   return lock;
 }
 
-Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& options) {
+Result<Lock> lock_of(Session& session, const Inventory& inventory, const PixelOptions& options) {
   const SessionReport report = session.report();
-  AFTERGLOW_TRY(Lock lock, look_lock(session.preset(), report.preset, graph, options));
+  AFTERGLOW_TRY(Lock lock, look_lock(session.preset(), report.preset, inventory, options));
   lock.made_with["device"] = report.device;
   lock.made_with["driver"] = report.driver;
   lock.made_with["execution"] = execution_name(report.choice.execution);
@@ -106,8 +109,14 @@ Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& o
 }
 
 std::string lock_text(const Lock& lock) {
-  const json out{{"afterglow_lock", kVersion},
-                 {"look", {{"preset", lock.preset}, {"files", lock.files}, {"options", lock.options}}},
+  const json out{{"afterglow_lock", lock.version},
+                 {"look",
+                  {{"preset", lock.preset},
+                   {"files", lock.files},
+                   {"frame_files", lock.frame_files},
+                   {"environment", lock.environment},
+                   {"generated", lock.generated},
+                   {"options", lock.options}}},
                  {"made_with", lock.made_with}};
   return json_text(out);
 }
@@ -117,20 +126,28 @@ Result<Lock> read_lock(const fs::path& file) {
   try {
     const json in = json::parse(text);
     const int version = in.at("afterglow_lock").get<int>();
-    if (version != kVersion)
-      return not_a_lock(file, fmt::format("it has version {}, this program reads version {}", version, kVersion));
+    if (version < 1 || version > kVersion)
+      return not_a_lock(file, fmt::format("it has version {}, this program reads up to {}", version, kVersion));
+    const json& look = in.at("look");
     Lock lock;
-    lock.preset = in.at("look").at("preset").get<std::string>();
-    lock.files = in.at("look").at("files").get<std::map<std::string, std::string>>();
-    lock.options = in.at("look").at("options").get<std::map<std::string, std::string>>();
-    lock.made_with = in.at("made_with").get<std::map<std::string, std::string>>();
+    lock.preset = look.at("preset").get<std::string>();
+    lock.files = look.at("files").get<LockTable>();
+    lock.version = version;
+    if (version > 1) {
+      lock.frame_files = look.at("frame_files").get<LockTable>();
+      lock.environment = look.at("environment").get<LockTable>();
+      lock.generated = look.at("generated").get<LockTable>();
+    }
+    lock.options = look.at("options").get<LockTable>();
+    lock.made_with = in.at("made_with").get<LockTable>();
     return lock;
   } catch (const json::exception& error) {
     return not_a_lock(file, error.what());
   }
 }
 
-Result<void> hold_against(const Lock& locked, const Lock& now, const fs::path& file, Diagnostics& diagnostics) {
+Result<void> hold_against(const Lock& locked, const Lock& given, const fs::path& file, Diagnostics& diagnostics) {
+  const Lock now = locked.version == 1 ? in_version_1(given, locked, file, diagnostics) : given;
   std::map<std::string, std::string> made_with;  // that the lock knows
   for (const auto& [name, value] : now.made_with)
     if (locked.made_with.contains(name)) made_with.emplace(name, value);
@@ -139,8 +156,16 @@ Result<void> hold_against(const Lock& locked, const Lock& now, const fs::path& f
   std::vector<std::string> found;
   if (locked.preset != now.preset) found.push_back(fmt::format("the preset is {}, was {}", now.preset, locked.preset));
   std::ranges::copy(differences(locked.files, now.files, false), std::back_inserter(found));
+  for (const auto& table : {&Lock::frame_files, &Lock::environment})
+    std::ranges::copy(differences(used_now(locked.*table, now.*table), now.*table, table == &Lock::environment),
+                      std::back_inserter(found));
   std::ranges::copy(differences(locked.options, now.options, true), std::back_inserter(found));
-  if (found.empty()) return {};
+  if (found.empty()) {
+    // Of the same files and variables: another version of OpenColorIO, or another processor under it.
+    for (const auto& difference : differences(used_now(locked.generated, now.generated), now.generated, false))
+      diagnostics.warn(fmt::format("{}: what OpenColorIO makes of {}: pixels may differ", file.string(), difference));
+    return {};
+  }
   Error error{ErrorKind::script, fmt::format("the look is not the locked one: {}", found.front()), file.string()};
   if (found.size() > 1) error.message += fmt::format(" (and {} more)", found.size() - 1);
   error.trail.assign(found.begin() + 1, found.end());

@@ -2,9 +2,10 @@
 // --lock and --locked: what a run was made with, written down, and held against what is there now.
 //
 // A lock is a small JSON file. Its `look` is all that decides the pixels besides the pictures: a hash of every script
-// and shader and file they name, and the options; when any of it differs the pixels do, so that a locked run is
-// refused. Its `made_with` names program, libraries, device, driver and way of execution: the look is the same with
-// others, pixels are so within the bounds of docs/determinism.md, so that a difference is a warning.
+// and shader and of the files that they name in the frames of the run, the variables of the environment that these
+// depend on, and the options (see inventory.h); when any of it differs the pixels do, so that a locked run is refused.
+// Its `made_with` names program, libraries, device, driver and way of execution: the look is the same with others,
+// pixels are so within the bounds of docs/determinism.md, so that a difference is a warning.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "batch/inventory.h"
 #include "core/diagnostics.h"
 #include "core/result.h"
-#include "graph/graph.h"
 #include "session/session.h"
 
 namespace afterglow {
@@ -24,16 +25,21 @@ namespace afterglow {
 using PixelOptions = std::vector<std::pair<std::string, std::string>>;
 
 struct Lock {
-  std::string preset;                          ///< name of its file
-  std::map<std::string, std::string> files;    ///< hash by name: "effects/glow.lua", "installation: shaders/…"
-  std::map<std::string, std::string> options;  ///< those that are not empty
+  int version = 2;                           ///< of the file
+  std::string preset;                        ///< name of its file
+  std::map<std::string, std::string> files;  ///< hash by name: "effects/glow.lua", "installation: shaders/…"
+  /// The same for files that other frames need not use: a run of some of the frames agrees with the lock of all.
+  std::map<std::string, std::string> frame_files;
+  std::map<std::string, std::string> environment;  ///< see Dependencies
+  std::map<std::string, std::string> generated;    ///< the same; a difference is a warning
+  std::map<std::string, std::string> options;      ///< those that are not empty
   std::map<std::string, std::string> made_with;
 };
 
-/// Of a session and the graph of its frames. Errors: script, io.
-Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& options);
+/// Of a session and what its frames are made of. Errors: script, io.
+Result<Lock> lock_of(Session& session, const Inventory& inventory, const PixelOptions& options);
 /// The same without a device: `made_with` says nothing of it. `file` is the preset's.
-Result<Lock> look_lock(const Preset& preset, const std::filesystem::path& file, const Graph& graph,
+Result<Lock> look_lock(const Preset& preset, const std::filesystem::path& file, const Inventory& inventory,
                        const PixelOptions& options);
 
 std::string lock_text(const Lock& lock);

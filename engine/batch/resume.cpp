@@ -2,7 +2,10 @@
 #include "batch/resume.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <set>
 #include <system_error>
 
@@ -10,50 +13,105 @@
 #include "core/temporary.h"
 #include "core/text.h"
 #include "core/version.h"
-#include "shader/library.h"
 
 namespace afterglow {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLargestNote = 1u << 20;
+constexpr const char* kInPath = "path:";  // before a name that is looked up along the search path
+
 fs::path record_file(const fs::path& output) {
   return output.parent_path() / ".afterglow" / (output.filename().string() + ".made");
 }
 
+/// Size, and time in nanoseconds; empty: it is not there.
+std::string stamp_of(const fs::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return {};
+  return fmt::format("{} {}.{:09}", status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
+std::string variable(const std::string& name) {
+  const char* value = std::getenv(name.c_str());
+  return value ? value : "";
+}
+
+/// What stands behind a word and a space; none: the line begins otherwise.
+std::optional<std::string> behind(const std::string& line, const std::string& word) {
+  if (!line.starts_with(word + " ")) return std::nullopt;
+  return line.substr(word.size() + 1);
+}
+
 }  // namespace
 
-Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::string& options) {
+Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const std::string& options) {
   Hasher hasher;
   hasher.add(version()).add(options);
-  for (const auto& file : preset.files()) {
-    AFTERGLOW_TRY(const std::string text, read_file(file));
-    hasher.add(text);
+  // By names that hold for the copies that a farm reads, too.
+  for (const auto& [name, file] : PortableNames(preset.path()).of(inventory.sources)) {
+    AFTERGLOW_TRY(const Hash hash, hash_file(file));
+    hasher.add(name).add(hash.hex());
   }
-  ShaderLibrary shaders(preset.path());
-  for (const auto& pass : graph.passes)
-    for (const auto& name : shaders_of(pass)) {
-      AFTERGLOW_TRY(const auto shader, shaders.find(name));
-      hasher.add(shader->hash.hex());
-    }
-  if (preset.may_change())
-    for (const auto& name : shaders.names())
-      if (const auto shader = shaders.find(name)) hasher.add((*shader)->hash.hex());
   return hasher.finish();
 }
 
-bool is_up_to_date(const FrameJob& job, const Hash& look) {
-  std::error_code ec;
-  const auto made = fs::last_write_time(job.output, ec);
-  if (ec) return false;
-  std::vector<fs::path> sources = job.sources();
-  sources.insert(sources.end(), job.earlier.begin(), job.earlier.end());
-  for (const auto& source : sources) {
-    const auto changed = fs::last_write_time(source, ec);
-    if (ec || changed >= made) return false;
+Hash FrameNotes::inputs_of(const FrameJob& job) {
+  Hasher hasher;
+  for (const auto& files : {job.sources(), job.earlier})
+    for (const auto& file : files) {
+      const std::string stamp = stamp_of(file);
+      if (stamp.empty()) return {};
+      hasher.add(file.filename().string()).add(stamp);
+    }
+  return hasher.finish();
+}
+
+std::string FrameNotes::text(const Hash& inputs, const Dependencies& depends) {
+  std::string out = fmt::format("look {}\ninputs {}\n", look_.hex(), inputs.hex());
+  for (const auto& [file, asked] : depends.files) {
+    const auto hash = hashes_.of(file);
+    const std::string name = asked.empty() ? names_.place(file) : asked == kOcioVariable ? asked : kInPath + asked;
+    out += fmt::format("file {} {}\n", hash ? hash->hex() : "", name);
   }
-  const auto record = read_file(record_file(job.output), 1024);
-  return record && trim(*record) == look.hex();
+  for (const auto& [name, value] : depends.environment) out += fmt::format("variable {}={}\n", name, value);
+  return out;
+}
+
+fs::path FrameNotes::file_of(const std::string& name) const {
+  if (name == kOcioVariable) return variable("OCIO");
+  if (name.starts_with(kInPath)) return path_.find_asset(name.substr(std::string_view(kInPath).size()));
+  return names_.file_at(name);
+}
+
+bool FrameNotes::is_same(const std::string& line, const FrameJob& job) {
+  if (const auto look = behind(line, "look")) return *look == look_.hex();
+  if (const auto inputs = behind(line, "inputs")) {
+    const Hash now = inputs_of(job);
+    return now != Hash{} && now.hex() == *inputs;
+  }
+  if (const auto output = behind(line, "output")) return *output == stamp_of(job.output);
+  if (const auto file = behind(line, "file")) {
+    const std::size_t space = file->find(' ');
+    if (space == std::string::npos) return false;
+    const auto hash = hashes_.of(file_of(file->substr(space + 1)));
+    return hash && hash->hex() == file->substr(0, space);
+  }
+  if (const auto given = behind(line, "variable")) {
+    const std::size_t equals = given->find('=');
+    return equals != std::string::npos && variable(given->substr(0, equals)) == given->substr(equals + 1);
+  }
+  return false;
+}
+
+bool FrameNotes::is_up_to_date(const FrameJob& job) {
+  const auto note = read_file(record_file(job.output), kLargestNote);
+  if (!note || !note->ends_with('\n')) return false;
+  const auto lines = split(note->substr(0, note->size() - 1), '\n');
+  constexpr std::size_t kLeast = 3;  // look, inputs, output
+  return lines.size() >= kLeast && lines.back().starts_with("output ") &&
+         std::ranges::all_of(lines, [&](const std::string& line) { return is_same(line, job); });
 }
 
 int remove_leftovers(const FrameRecords& frames) {
@@ -65,11 +123,12 @@ int remove_leftovers(const FrameRecords& frames) {
   return removed;
 }
 
-Result<void> record_made(const FrameJob& job, const Hash& look) {
+Result<void> record_made(const FrameJob& job) {
+  if (job.made_of.empty()) return {};
   const fs::path file = record_file(job.output);
   std::error_code ec;
   fs::create_directory(file.parent_path(), ec);
-  return write_file_atomically(file, look.hex() + "\n");
+  return write_file_atomically(file, job.made_of + "output " + stamp_of(job.output) + "\n");
 }
 
 }  // namespace afterglow

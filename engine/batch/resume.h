@@ -1,34 +1,54 @@
 // SPDX-License-Identifier: MIT
 // --resume: which outputs need not be made again.
 //
-// Beside the outputs of a sequence stands a folder `.afterglow` with one small file an output, `NAME.made`, that holds
-// the hash of everything the pixels depend on but the input: scripts, shaders, overrides and options. An output is
-// skipped when that hash is the present one and the output is newer than all its inputs. One file an output, so that
-// many machines can share a folder.
+// Beside the outputs of a sequence stands a folder `.afterglow` with one small file an output, `NAME.made`: what that
+// output was made of, written when it was whole. It holds the hash of all that is the same for every frame (scripts,
+// shaders, overrides and options), the hashes of the tables and pictures that this frame's passes read, the variables
+// of the environment that they depend on, size and time of each input, and size and time of the output itself. An
+// output is skipped when all of that is as it was: one that was made otherwise since, by a run without a note or by
+// hand, is not the one that the note is about. One file an output, so that many machines can share a folder.
 #pragma once
 
+#include <filesystem>
 #include <string>
-#include <vector>
 
 #include "batch/frame_list.h"
+#include "batch/inventory.h"
 #include "batch/run_report.h"
 #include "core/hash.h"
 #include "core/result.h"
-#include "graph/graph.h"
 #include "script/preset.h"
 
 namespace afterglow {
 
-/// Hash of the scripts, the shaders of `graph`, and `options` (a text with every option that changes pixels). When
-/// other frames may have other passes, all shaders that can be found count. Errors: script, io.
-Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::string& options);
+/// Hash of the scripts, the shaders, and `options` (a text with every option that changes pixels). Errors: io.
+Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const std::string& options);
 
-/// True when the output exists, was made by the look with this hash, and is newer than its inputs.
-bool is_up_to_date(const FrameJob& job, const Hash& look);
+/// Writes and reads what frames are made of. Not thread-safe, but for `record_made`.
+class FrameNotes {
+ public:
+  FrameNotes(const Hash& look, SearchPath path) : look_(look), path_(std::move(path)), names_(path_) {}
+
+  /// Size and time of every file that the output is made from; taken before they are read. Zero: one is not there.
+  static Hash inputs_of(const FrameJob& job);
+  /// What is to be noted of a frame (FrameJob::made_of): `inputs`, and what its passes were made of.
+  std::string text(const Hash& inputs, const Dependencies& depends);
+  /// True when the output is the one that was noted, and would be made of the same.
+  bool is_up_to_date(const FrameJob& job);
+
+ private:
+  bool is_same(const std::string& line, const FrameJob& job);
+  std::filesystem::path file_of(const std::string& name) const;
+  Hash look_;
+  SearchPath path_;
+  PortableNames names_;
+  FileHashes hashes_;
+};
+
 /// Removes what killed runs on this machine have left half-written in the folders of these outputs; returns how many
 /// files.
 int remove_leftovers(const FrameRecords& frames);
-/// Notes that the output was made by this look. Errors: io.
-Result<void> record_made(const FrameJob& job, const Hash& look);
+/// Notes what the output was made of, behind it; nothing when FrameJob::made_of is empty. Thread-safe. Errors: io.
+Result<void> record_made(const FrameJob& job);
 
 }  // namespace afterglow

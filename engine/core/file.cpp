@@ -110,10 +110,11 @@ bool is_file(const fs::path& path, FileRecord* record) {
   return fs::is_regular_file(path, ec);
 }
 
-Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecord* record) {
-  if (record)
-    if (auto text = record->kept(path)) return *std::move(text);
-  FileRecord::Reading reading(record, path);
+namespace {
+
+/// Gives the content piece by piece. Errors: those of `take`, and as read_file.
+template <class Take>
+Result<void> read_pieces(const fs::path& path, Take&& take) {
   std::error_code ec;
   const auto status = fs::status(path, ec);
   if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
@@ -122,16 +123,36 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecor
   if (fs::is_fifo(status)) return Error{ErrorKind::io, "is a pipe, not a file", path.string()};
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{ErrorKind::io, fmt::format("cannot be read: {}", std::strerror(errno)), path.string()};
-  std::string content;
   char buffer[65536];
-  while (in.read(buffer, sizeof buffer) || in.gcount() > 0) {
-    content.append(buffer, static_cast<std::size_t>(in.gcount()));
-    if (content.size() > limit)
-      return Error{ErrorKind::io, fmt::format("is larger than {} bytes", limit), path.string()};
-  }
+  while (in.read(buffer, sizeof buffer) || in.gcount() > 0)
+    AFTERGLOW_CHECK(take(std::string_view(buffer, static_cast<std::size_t>(in.gcount()))));
   if (in.bad()) return Error{ErrorKind::io, "read error", path.string()};
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecord* record) {
+  if (record)
+    if (auto text = record->kept(path)) return *std::move(text);
+  FileRecord::Reading reading(record, path);
+  std::string content;
+  AFTERGLOW_CHECK(read_pieces(path, [&](std::string_view piece) -> Result<void> {
+    content.append(piece);
+    if (content.size() <= limit) return {};
+    return Error{ErrorKind::io, fmt::format("is larger than {} bytes", limit), path.string()};
+  }));
   reading.done(content);
   return content;
+}
+
+Result<Hash> hash_file(const fs::path& path) {
+  HashStream stream;
+  AFTERGLOW_CHECK(read_pieces(path, [&](std::string_view piece) -> Result<void> {
+    stream.add(piece);
+    return {};
+  }));
+  return stream.finish();
 }
 
 Result<std::string> read_named_file(const fs::path& path, std::size_t limit, FileRecord* record) {

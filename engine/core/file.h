@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/hash.h"
 #include "core/result.h"
 
 namespace afterglow {
@@ -18,6 +19,9 @@ class FileRecord;  // core/file_record.h
 /// `record` takes the look down; one that keeps gives what was read before.
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
                               FileRecord* record = nullptr);
+
+/// What hash_text says of its content, whatever its size. Errors: as read_file.
+Result<Hash> hash_file(const std::filesystem::path& path);
 
 /// As read_file, for a file that a user has named: one that is not there is told as missing_file does.
 Result<std::string> read_named_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,

@@ -144,12 +144,14 @@ std::shared_ptr<const FileProbes> FileRecord::looks() const {
 }
 
 FileRecord::Reading::Reading(FileRecord* record, const fs::path& path) : record_(record), path_(path) {
-  if (record_) stamp_ = trusted_stamp(path);
+  if (!record_) return;
+  stamp_ = trusted_stamp(path);
+  before_ = stamp(path);
 }
 
 void FileRecord::Reading::done(std::string_view content) {
   if (record_) {
-    record_->add(path_, {Kind::content, hash_text(content), stamp_});
+    record_->add(path_, {Kind::content, content.size() > kLargest ? before_ : hash_text(content), stamp_});
     record_->keep(path_, content);
   }
   record_ = nullptr;

@@ -22,7 +22,7 @@ struct FileProbe {
     existence,  ///< is there a file or a folder?
     stamp,      ///< size, times and number of the file: for large ones
     listing,    ///< names in a folder
-    content,
+    content,    ///< of files above 64 MiB their stamp
   };
   Kind kind = Kind::existence;
   Hash seen;   ///< of what was found
@@ -60,7 +60,8 @@ class FileRecord {
    private:
     FileRecord* record_;
     const std::filesystem::path& path_;
-    Hash stamp_;
+    Hash stamp_;   ///< FileProbe::stamp
+    Hash before_;  ///< the same whether or not it is to be relied on: what a large file is known by
   };
 
  private:

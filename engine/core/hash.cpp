@@ -13,6 +13,15 @@ Hash hash_bytes(const void* data, std::size_t size) {
   return {h.high64, h.low64};
 }
 
+HashStream::HashStream() : state_(XXH3_createState()) { XXH3_128bits_reset(state_); }
+HashStream::~HashStream() { XXH3_freeState(state_); }
+void HashStream::add(std::string_view piece) { XXH3_128bits_update(state_, piece.data(), piece.size()); }
+
+Hash HashStream::finish() const {
+  const XXH128_hash_t h = XXH3_128bits_digest(state_);
+  return {h.high64, h.low64};
+}
+
 Hasher& Hasher::add(std::string_view text) {
   add(static_cast<std::uint64_t>(text.size()));
   joined_ += text;

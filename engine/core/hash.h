@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+struct XXH3_state_s;  // of xxHash
+
 namespace afterglow {
 
 struct Hash {
@@ -18,6 +20,20 @@ struct Hash {
 
 Hash hash_bytes(const void* data, std::size_t size);
 inline Hash hash_text(std::string_view text) { return hash_bytes(text.data(), text.size()); }
+
+/// hash_text of a text that comes in pieces.
+class HashStream {
+ public:
+  HashStream();
+  ~HashStream();
+  HashStream(const HashStream&) = delete;
+  HashStream& operator=(const HashStream&) = delete;
+  void add(std::string_view piece);
+  Hash finish() const;
+
+ private:
+  XXH3_state_s* state_;
+};
 
 /// Hash of several texts; boundaries count ("ab","c" differs from "a","bc").
 class Hasher {

@@ -2,13 +2,12 @@
 #include "core/pack.h"
 
 #include <fmt/format.h>
-#include <minizip/unzip.h>
 #include <sys/stat.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <memory>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "core/hash.h"
 #include "core/temporary.h"
 #include "core/text.h"
+#include "core/zip_bytes.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -27,13 +27,9 @@ constexpr std::uint64_t kSmall = 1u << 20;  // below this, a high ratio harms no
 struct Entry {
   std::string name;
   std::uint64_t bytes = 0;  ///< unpacked
+  std::uint64_t crc = 0;    ///< of that
   unz64_file_pos place{};
 };
-
-struct CloseZip {
-  void operator()(void* zip) const { unzClose(zip); }
-};
-using Zip = std::unique_ptr<void, CloseZip>;
 
 Error refused(const fs::path& zip, const std::string& why) {
   return {ErrorKind::script, "the pack is refused: " + why, zip.string()};
@@ -74,7 +70,7 @@ Result<std::vector<Entry>> list_entries(unzFile zip, const fs::path& path, const
       return refused(path, "it is damaged");
     if (++count > limits.files) return refused(path, fmt::format("it holds more than {} files", limits.files));
     if (info.size_filename >= name.size() - 1) return refused(path, "a name in it is too long");
-    Entry entry{std::string(name.data(), info.size_filename), info.uncompressed_size, {}};
+    Entry entry{std::string(name.data(), info.size_filename), info.uncompressed_size, info.crc, {}};
     if (auto fault = fault_of(info, entry.name, limits); !fault.empty()) return refused(path, fault);
     if (!names.insert(lower(entry.name)).second) return refused(path, in_quotes(entry.name) + " is there twice");
     total += entry.bytes;
@@ -102,10 +98,12 @@ Result<std::string> unpack(unzFile zip, const fs::path& path, const Entry& entry
   return content;
 }
 
+/// A size alone may be that of a file whose blocks were lost, or of one that was edited.
 bool is_whole(const fs::path& folder, const std::vector<Entry>& entries) {
   return std::ranges::all_of(entries, [&](const Entry& entry) {
-    std::error_code ec;
-    return fs::file_size(folder / entry.name, ec) == entry.bytes && !ec;
+    const auto content = read_file(folder / entry.name, entry.bytes);
+    return content && content->size() == entry.bytes &&
+           crc32_z(0, reinterpret_cast<const Bytef*>(content->data()), content->size()) == entry.crc;
   });
 }
 
@@ -146,7 +144,7 @@ bool is_zip(const fs::path& path) {
 Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const PackLimits& limits) {
   auto bytes = read_file(path, limits.zip_bytes);
   if (!bytes) return Error{ErrorKind::script, bytes.error().message, path.string()};
-  const Zip zip(unzOpen64(path.c_str()));
+  const Zip zip = open_zip_bytes(*bytes);
   if (!zip) return refused(path, "it is no zip");
   AFTERGLOW_TRY(const std::vector<Entry> entries, list_entries(zip.get(), path, limits));
 

@@ -2,10 +2,12 @@
 #include "core/paths.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cstdlib>
 #include <set>
 #include <system_error>
@@ -15,6 +17,7 @@
 #include "core/own_file.h"
 #include "core/pack.h"
 #include "core/text.h"
+#include "core/user_folders.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -80,6 +83,18 @@ std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
   if (!installation.empty() && is_file(installation / "shaders" / name, record.get()))
     hits.push_back(installation / "shaders" / name);
   return hits;
+}
+
+std::vector<fs::path> SearchPath::asset_folders() const {
+  std::vector<fs::path> folders = user;
+  if (!installation.empty()) folders.push_back(installation / "assets");
+  return folders;
+}
+
+fs::path SearchPath::find_asset(const std::string& name) const {
+  for (const auto& folder : asset_folders())
+    if (is_file(folder / name, record.get())) return folder / name;
+  return {};
 }
 
 std::vector<fs::path> SearchPath::script_folders(const std::string& kind) const {
@@ -194,12 +209,41 @@ Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs
                join(names),       beside ? given + ".lua" : nearest_name(given, names)};
 }
 
+namespace {
+
+/// Could it be made and written to, as far as permissions say?
+bool is_writable(fs::path folder) {
+  std::error_code ec;
+  while (!fs::exists(folder, ec) && folder.has_relative_path()) folder = folder.parent_path();
+  return fs::is_directory(folder, ec) && access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+/// Makes the folder, or finds that it is this user's and nobody else may write to it: what lies in a cache is run.
+bool claim(const fs::path& folder) {
+  if (mkdir(folder.c_str(), 0700) == 0) return true;
+  struct stat status {};
+  return errno == EEXIST && lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) &&
+         status.st_uid == geteuid() && (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+/// Anybody may have made a folder of this name before.
+fs::path make_temporary_cache() {
+  std::error_code ec;
+  const fs::path folder = fs::temp_directory_path(ec) / fmt::format("afterglow-{}", geteuid());
+  if (claim(folder)) return folder;
+  std::string own = folder.string() + "-XXXXXX";
+  if (mkdtemp(own.data())) return own;
+  return "/dev/null/afterglow";  // cannot be made: there is no cache
+}
+
+}  // namespace
+
 fs::path cache_folder() {
   if (const auto own = environment("AFTERGLOW_CACHE"); !own.empty()) return own;
-  if (const auto xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) return fs::path(xdg) / "afterglow";
-  if (const auto home = environment("HOME"); !home.empty()) return fs::path(home) / ".cache" / "afterglow";
-  std::error_code ec;
-  return fs::temp_directory_path(ec) / fmt::format("afterglow-{}", getuid());
+  const fs::path users = user_cache_folder();
+  if (!users.empty() && is_writable(users)) return users;
+  static const fs::path temporary = make_temporary_cache();
+  return temporary;
 }
 
 }  // namespace afterglow

@@ -33,6 +33,11 @@ struct SearchPath {
   std::vector<std::filesystem::path> find_script(const std::string& name, const std::string& folder) const;
   /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first.
   std::vector<std::filesystem::path> find_shader(const std::string& name) const;
+  /// Folders in which files are found that scripts name, like "luts/film.cube"; those of the installation lie in
+  /// assets/.
+  std::vector<std::filesystem::path> asset_folders() const;
+  /// The file of such a name; empty: there is none.
+  std::filesystem::path find_asset(const std::string& name) const;
   /// The preset of that name: `NAME.lua` or `NAME/NAME.lua`, in each folder itself and in its `presets/`; all hits, the
   /// winner first. Names are letters, digits, '_' and '-'.
   std::vector<std::filesystem::path> find_preset(const std::string& name) const;
@@ -67,8 +72,8 @@ Result<std::filesystem::path> find_preset_file(const std::string& given,
                                                const std::vector<std::filesystem::path>& extra,
                                                const std::filesystem::path& installation = {});
 
-/// Folder for disk caches: AFTERGLOW_CACHE, else XDG_CACHE_HOME/afterglow, else HOME/.cache/afterglow, else a
-/// folder of the user's under the system's temporary folder. Not created.
+/// Folder for disk caches: AFTERGLOW_CACHE, else user_cache_folder if it can be written to (neither is created), else
+/// one below the temporary folder, made here, that is this user's and that nobody else may write to.
 std::filesystem::path cache_folder();
 
 }  // namespace afterglow

@@ -22,6 +22,7 @@ fs::path user_folder(const char* variable, const fs::path& below_home) {
 }  // namespace
 
 fs::path config_folder() { return user_folder("XDG_CONFIG_HOME", ".config"); }
+fs::path user_cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }
 fs::path state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
 
 }  // namespace afterglow

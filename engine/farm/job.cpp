@@ -247,8 +247,8 @@ void discard_job(const Job& job) {
 Result<void> check_packed(const Job& job) {
   for (const auto& [name, hash] : job.files) {
     const fs::path file = job.folder / name;
-    AFTERGLOW_TRY(const std::string content, read_file(file, kLargest));
-    if (hash_text(content).hex() != hash)
+    AFTERGLOW_TRY(const Hash now, hash_file(file));
+    if (now.hex() != hash)
       return Error{ErrorKind::io, "has changed since the job was submitted; submit it again", file.string()};
   }
   return {};

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "farm/look.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <system_error>
 
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/temporary.h"
 #include "graph/history.h"
 #include "script/build.h"
 
@@ -14,10 +17,6 @@ namespace afterglow::farm {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostAsked = 64;          // frames of a look that moves that are looked at
-constexpr std::size_t kLargestFile = 1u << 30;  // tables and pictures of looks
-constexpr Size kUsualSize{1920, 1080};
 
 /// Absolute, and without ".." that would lead out of the pack.
 fs::path whole(const fs::path& path) {
@@ -47,15 +46,11 @@ Result<Loaded> load(const fs::path& file, const PresetOptions& options, Diagnost
   return out;
 }
 
-/// Reads the shaders that the frame runs, and those that others may.
-Result<void> read_shaders(const Preset& preset, const Graph& graph) {
-  ShaderLibrary shaders(preset.path());
-  for (const auto& pass : graph.passes)
-    for (const auto& name : shaders_of(pass))
-      if (auto shader = shaders.find(name); !shader) return std::move(shader).error();
-  if (preset.may_change())
-    for (const auto& name : shaders.names()) static_cast<void>(shaders.find(name));
-  return {};
+Result<Inventory> inventory_of(Preset& preset, const std::vector<FrameJob>& frames, double fps,
+                               Diagnostics& diagnostics, const EachBuild& each = {}) {
+  std::vector<const FrameJob*> jobs;
+  for (const auto& frame : frames) jobs.push_back(&frame);
+  return take_inventory(preset, usual_contexts(preset, jobs, fps), diagnostics, each);
 }
 
 }  // namespace
@@ -69,15 +64,12 @@ Result<LoadedLook> load_look(const BatchRequest& request, const std::vector<Fram
   AFTERGLOW_TRY(const Loaded look, load(file, options, diagnostics));
   Preset& preset = *look.preset;
   LoadedLook out;
-  const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
-  for (std::size_t i = 0; i < asked; ++i) {
-    const double frame = frames[i * frames.size() / asked].frame;
-    AFTERGLOW_TRY(const Build build,
-                  preset.evaluate(usual_context(preset, kUsualSize, frame, request.loop.fps), diagnostics));
+  const auto each = [&](const Build& build) {
     if (!build.graph.histories.empty())
       out.pre_roll = std::max(out.pre_roll.value_or(0), request.pre_roll.value_or(pre_roll(build.graph)));
-    AFTERGLOW_CHECK(read_shaders(preset, build.graph));
-  }
+  };
+  AFTERGLOW_TRY(const Inventory inventory, inventory_of(preset, frames, request.loop.fps, diagnostics, each));
+  out.environment = inventory.depends.environment;
   const fs::path& installation = preset.path().installation;
   std::error_code ec;
   for (const auto& [path, probe] : *preset.probes()) {
@@ -98,12 +90,16 @@ fs::path packed_place(const fs::path& folder, const fs::path& file) {
 }
 
 Result<void> pack_file(const fs::path& file, const std::string& name, Job& job) {
-  AFTERGLOW_TRY(const std::string content, read_file(file, kLargestFile));
-  std::error_code ec;
   const fs::path place = job.folder / name;
+  std::error_code ec;
   fs::create_directories(place.parent_path(), ec);
-  AFTERGLOW_CHECK(write_file_atomically(place, content));
-  job.files[name] = hash_text(content).hex();
+  Temporary copy(place);
+  fs::copy_file(file, copy.path(), ec);
+  if (ec)
+    return Error{ErrorKind::io, fmt::format("cannot be copied to {}: {}", place.string(), ec.message()), file.string()};
+  AFTERGLOW_CHECK(copy.commit());
+  AFTERGLOW_TRY(const Hash hash, hash_file(place));
+  job.files[name] = hash.hex();
   return {};
 }
 
@@ -115,11 +111,12 @@ Result<void> pack_look(const LoadedLook& look, Job& job) {
   return {};
 }
 
-Result<void> lock_packed_look(const BatchRequest& request, const fs::path& locked, Job& job, Diagnostics& diagnostics) {
+Result<void> lock_packed_look(const BatchRequest& request, const std::vector<FrameJob>& frames, const fs::path& locked,
+                              Job& job, Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Loaded look, load(request.preset, request.session.stack.preset, diagnostics));
-  const BuildContext usual = usual_context(*look.preset, kUsualSize, 1, request.loop.fps);
-  AFTERGLOW_TRY(const Build build, look.preset->evaluate(usual, diagnostics));
-  AFTERGLOW_TRY(const Lock lock, look_lock(*look.preset, request.preset, build.graph, request.pixel_options));
+  Preset& preset = *look.preset;
+  AFTERGLOW_TRY(const Inventory inventory, inventory_of(preset, frames, request.loop.fps, diagnostics));
+  AFTERGLOW_TRY(const Lock lock, look_lock(preset, request.preset, inventory, request.pixel_options));
   if (!locked.empty()) {
     AFTERGLOW_TRY(const Lock given, read_lock(locked));
     AFTERGLOW_CHECK(hold_against(given, lock, locked, diagnostics));

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,9 +21,10 @@ namespace afterglow::farm {
 
 /// What was found when a look was loaded.
 struct LoadedLook {
-  std::optional<int> pre_roll;                 ///< empty: no frame depends on another
-  std::vector<std::filesystem::path> files;    ///< absolute, of those that are to be packed
-  std::vector<std::filesystem::path> folders;  ///< that were there, absolute
+  std::optional<int> pre_roll;                     ///< empty: no frame depends on another
+  std::vector<std::filesystem::path> files;        ///< absolute, of those that are to be packed
+  std::vector<std::filesystem::path> folders;      ///< that were there, absolute
+  std::map<std::string, std::string> environment;  ///< that it depends on; empty: not set
 };
 
 /// Loads the look and asks it about frames; needs no device. Errors: script, usage.
@@ -37,9 +39,9 @@ Result<void> pack_look(const LoadedLook& look, Job& job);
 /// Copies one file to `name` in the job's folder. Errors: io.
 Result<void> pack_file(const std::filesystem::path& file, const std::string& name, Job& job);
 
-/// Loads the packed look as chunks will (`request`) and writes down what it is made of, as look/lock.json. It must be
-/// the look of `locked`, unless that is empty. Errors: script, io.
-Result<void> lock_packed_look(const BatchRequest& request, const std::filesystem::path& locked, Job& job,
-                              Diagnostics& diagnostics);
+/// Loads the packed look as chunks will (`request`) and writes down what it is made of in all frames, as
+/// look/lock.json. It must be the look of `locked`, unless that is empty. Errors: script, io.
+Result<void> lock_packed_look(const BatchRequest& request, const std::vector<FrameJob>& frames,
+                              const std::filesystem::path& locked, Job& job, Diagnostics& diagnostics);
 
 }  // namespace afterglow::farm

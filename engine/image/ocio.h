@@ -73,6 +73,9 @@ struct OcioFunction {
   std::string display, view;  ///< those that are meant, where the request leaves them to the configuration
 };
 
+/// Of OpenColorIO: shaders that it generates are the same for the same version. Empty: it is not installed.
+std::string ocio_version();
+
 /// Errors: as above.
 Result<OcioFunction> ocio_function(const OcioRequest& request);
 

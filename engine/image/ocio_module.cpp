@@ -29,6 +29,11 @@ Result<OcioShader> ocio_shader(const OcioRequest& request) {
   return module->shader(request);
 }
 
+std::string ocio_version() {
+  const auto module = ocio_module();
+  return module ? (*module)->version() : std::string();
+}
+
 Result<OcioFunction> ocio_function(const OcioRequest& request) {
   AFTERGLOW_TRY(const OcioModule* module, ocio_module());
   return module->function(request);

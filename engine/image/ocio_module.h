@@ -25,6 +25,7 @@ struct OcioModule {
   Result<OcioSurvey> (*survey)(const OcioRequest& request);
   Result<OcioShader> (*shader)(const OcioRequest& request);
   Result<OcioFunction> (*function)(const OcioRequest& request);
+  std::string (*version)();
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed).

@@ -131,6 +131,8 @@ Result<OcioFunction> function(const OcioRequest& request) {
   });
 }
 
+std::string version() { return OCIO::GetVersion(); }
+
 std::vector<std::string> extensions() {
   // No tables: profiles of devices, and collections that name further files.
   static constexpr std::array kOthers{"icc", "icm", "pf", "ctf", "look"};
@@ -148,7 +150,7 @@ std::vector<std::string> extensions() {
 }  // namespace afterglow
 
 extern "C" __attribute__((visibility("default"))) const afterglow::OcioModule* afterglow_ocio_module() {
-  static constexpr afterglow::OcioModule module{&afterglow::read, &afterglow::extensions, &afterglow::survey,
-                                                &afterglow::shader, &afterglow::function};
+  static constexpr afterglow::OcioModule module{&afterglow::read,   &afterglow::extensions, &afterglow::survey,
+                                                &afterglow::shader, &afterglow::function,   &afterglow::version};
   return &module;
 }

@@ -37,12 +37,6 @@ const std::pair<std::string, SettingValue>* setting_of(const Runtime& runtime, c
   return found;
 }
 
-std::vector<fs::path> roots_of(const Runtime& runtime) {
-  std::vector<fs::path> roots = runtime.path.user;
-  if (!runtime.path.installation.empty()) roots.push_back(runtime.path.installation / "assets");
-  return roots;
-}
-
 /// Files with the same ending near where the name would be, for "did you mean".
 std::string nearest_file(const std::vector<fs::path>& roots, const std::string& name) {
   const fs::path folder = fs::path(name).parent_path();
@@ -80,12 +74,8 @@ void fail_at(lua_State* lua, const std::string& what, const AssetFault& fault) {
   throw error;
 }
 
-void note_file(Runtime& runtime, const fs::path& file) {
-  if (std::ranges::find(runtime.files, file) == runtime.files.end()) runtime.files.push_back(file);
-}
-
 bool may_read(const Runtime& runtime, const fs::path& file) {
-  return std::ranges::any_of(roots_of(runtime), [&](const auto& root) { return lies_in(file, root); });
+  return std::ranges::any_of(runtime.path.asset_folders(), [&](const auto& root) { return lies_in(file, root); });
 }
 
 bool is_given_by_command(const Runtime& runtime, const std::string& name) {
@@ -114,24 +104,23 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
   if (is_given_by_command(runtime, name)) {
-    note_file(runtime, name);
+    runtime.depends.files.emplace(name, "");
     return name;
   }
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
   if (!is_safe_entry(name, 8))
     fail_at(lua, what, {"file", name, "leads out of the folders that scripts may read", kAllowed, {}});
-  const auto roots = roots_of(runtime);
+  const auto roots = runtime.path.asset_folders();
   for (const auto& root : roots) {
     const fs::path file = root / name;
     if (!is_file(file, runtime.path.record.get())) continue;
     const bool own = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
     if (own && !lies_in(file, root))
       fail_at(lua, what, {"file", name, fmt::format("is a link that leads out of {}", root.string()), kAllowed, {}});
-    note_file(runtime, file);
+    runtime.depends.files.emplace(file, name);
     return file;
   }
-  if (!roots.empty()) note_file(runtime, roots.front() / name);  // where it may appear
   fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
 }
 

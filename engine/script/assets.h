@@ -12,6 +12,7 @@
 
 #include "core/image_data.h"
 #include "image/ocio.h"
+#include "script/dependencies.h"
 
 struct lua_State;
 
@@ -31,6 +32,7 @@ struct LoadedOcio {
   std::string shader;                      ///< its name for g:pass
   std::shared_ptr<const ImageData> table;  ///< that it reads; null: none
   std::filesystem::path config;
+  Dependencies depends;  ///< on what it was made of
 };
 
 /// What one state has read: a file is read once, so that every build of a preset sees the same.
@@ -60,8 +62,6 @@ struct AssetFault {
 /// Throws, at the setting of the entry being built where the value comes from, else at the call. `what` names the call.
 [[noreturn]] void fail_at(lua_State* lua, const std::string& what, const AssetFault& fault);
 
-/// The file is part of the look.
-void note_file(Runtime& runtime, const std::filesystem::path& file);
 /// Does it lie in a folder that scripts may read?
 bool may_read(const Runtime& runtime, const std::filesystem::path& file);
 /// Did the command line give this as a file for a setting of the entry being built? Then it may be any file.

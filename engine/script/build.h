@@ -10,6 +10,7 @@
 
 #include "core/file_record.h"
 #include "graph/graph.h"
+#include "script/dependencies.h"
 #include "script/explanation.h"
 #include "script/preset.h"
 
@@ -30,6 +31,7 @@ struct Build {
   std::shared_ptr<const Explanation> explanation;  ///< how the settings came about. Never null
   std::vector<Promises> promises;      ///< parallel to `entries`, as far as `promise_error` let them be asked
   std::optional<Error> promise_error;  ///< the frame is none the worse for it
+  Dependencies depends;                ///< of this frame's passes
   /// Everything that was looked at on disk for it so far, also in vain. Never null; the same value while nothing was
   /// added.
   std::shared_ptr<const FileProbes> files;

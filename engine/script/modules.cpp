@@ -165,7 +165,7 @@ bool is_identifier(const std::string& name) {
 void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::optional<std::string>& given) {
   Runtime& runtime = Runtime::of(lua);
   Sandbox& box = *runtime.box;
-  runtime.files.push_back(file);
+  runtime.scripts.push_back(file);
   int index = 0;
   {
     const Sandbox::Pause pause(box);

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "script/graph_builder.h"
 #include "script/native.h"
+#include "script/ocio_variables.h"
 #include "script/runtime.h"
 
 namespace afterglow::script {
@@ -25,12 +26,13 @@ constexpr std::size_t kMaxConfig = 16u << 20, kMaxTable = 64u << 20;  // bytes
 struct ChosenConfig {
   fs::path file;
   bool by_script = false;
+  std::string name;  ///< as Dependencies::files has it
 };
 
 ChosenConfig choose_config(lua_State* lua, const std::string& what, const std::string& name) {
   if (!name.empty()) {
     const bool by_command = is_given_by_command(Runtime::of(lua), name);
-    return {find_asset(lua, what, name), !by_command};
+    return {find_asset(lua, what, name), !by_command, by_command ? "" : name};
   }
   const char* named = std::getenv("OCIO");
   constexpr const char* kAllowed = "config = \"NAME.ocio\", a file beside the preset or on the search path";
@@ -44,8 +46,7 @@ ChosenConfig choose_config(lua_State* lua, const std::string& what, const std::s
              {}});
   std::error_code ec;
   const fs::path file = fs::absolute(named, ec);
-  if (!is_file(file, Runtime::of(lua).path.record.get())) {
-    note_file(Runtime::of(lua), file);
+  if (!is_file(file, Runtime::of(lua).path.record.get()))
     fail_at(lua, what,
             {"config",
              "",
@@ -53,8 +54,7 @@ ChosenConfig choose_config(lua_State* lua, const std::string& what, const std::s
                          tidy_message(named, 200)),
              kAllowed,
              {}});
-  }
-  return {file, false};
+  return {file, false, kOcioVariable};
 }
 
 /// Where the configuration's text names it; 0: nowhere in so many words.
@@ -78,13 +78,36 @@ void check_table(Runtime& runtime, const ChosenConfig& config, const std::string
   // First of all: nothing is told of what lies outside, not even whether it is there.
   if (config.by_script && !may_read(runtime, table.path))
     fail(fmt::format("{} lies outside of the folders that scripts may read", table.path.string()));
-  note_file(runtime, table.path);
   if (!is_file(table.path, runtime.path.record.get()))
     fail(fmt::format("there is no such file along the search path of the configuration, like {}", table.path.string()),
          nearest_name(table.path.filename().string(), names_in(table.path.parent_path())));
   const auto content = read_file(table.path, kMaxTable, runtime.path.record.get());
   if (!content) fail(content.error().message);
   if (auto sound = check_table(*content, table.path, TableUse::of_config); !sound) throw ScriptError{sound.error()};
+}
+
+/// The request in words that are the same on every machine.
+std::string request_text(const OcioRequest& request) {
+  std::string text = request.config.filename().string();
+  for (const auto& [what, name] :
+       {std::pair("from", &request.from), std::pair("display", &request.display), std::pair("view", &request.view),
+        std::pair("to", &request.to), std::pair("looks", &request.looks)})
+    if (!name->empty()) text += fmt::format(", {} {}", what, *name);
+  if (request.to_space && request.to.empty()) text += ", to the working space";
+  return request.inverse ? text + ", inverse" : text;
+}
+
+std::string variable(const std::string& name) {
+  const char* value = std::getenv(name.c_str());
+  return value ? value : "";
+}
+
+Dependencies dependencies(const ChosenConfig& config, const std::string& text, const OcioSurvey& survey) {
+  Dependencies out;
+  out.files.emplace(config.file, config.name);
+  for (const auto& table : survey.files) out.files.emplace(table.path, "");
+  for (const auto& name : ocio_variables(text)) out.environment.emplace(name, variable(name));
+  return out;
 }
 
 }  // namespace
@@ -97,10 +120,12 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
       fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", config.file.string(), request.from, request.display, request.view,
                   request.to_space, request.to, request.looks, request.inverse);
   const auto known = runtime.assets.ocio.find(key);
-  if (known != runtime.assets.ocio.end()) return known->second;
+  if (known != runtime.assets.ocio.end()) {
+    runtime.depends.add(known->second.depends);
+    return known->second;
+  }
   runtime.box->charge(kConfigCost);
   const Sandbox::Pause pause(*runtime.box);
-  note_file(runtime, config.file);
   const auto text = read_file(config.file, kMaxConfig, runtime.path.record.get());
   if (!text) throw ScriptError{{ErrorKind::script, text.error().message, config.file.string()}};
   const auto survey = survey_ocio(request);
@@ -119,8 +144,12 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
   for (const auto& table : survey->files) check_table(runtime, config, *text, table);
   auto made = ocio_shader(request);
   if (!made) throw ScriptError{std::move(made).error()};
-  LoadedOcio loaded{"ocio/" + hash_text(made->text).hex(), nullptr, config.file};
+  LoadedOcio loaded{"ocio/" + hash_text(made->text).hex(), nullptr, config.file, {}};
   if (!made->table.empty()) loaded.table = make_data(runtime, made->size, std::move(made->table), config.file);
+  loaded.depends = dependencies(config, *text, *survey);
+  loaded.depends.generated[request_text(request)] =
+      Hasher().add(made->text).add(loaded.table ? loaded.table->hash.hex() : "").finish();
+  runtime.depends.add(loaded.depends);
   runtime.path.made->add(loaded.shader, {std::move(made->text), config.file});
   return runtime.assets.ocio.emplace(key, std::move(loaded)).first->second;
 }

@@ -217,7 +217,7 @@ std::uint64_t Preset::evaluations() const { return state_->evaluations; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
 std::shared_ptr<const FileProbes> Preset::probes() const { return state_->runtime->path.record->looks(); }
 const SearchPath& Preset::path() const { return state_->runtime->path; }
-const std::vector<std::filesystem::path>& Preset::files() const { return state_->runtime->files; }
+const std::vector<std::filesystem::path>& Preset::scripts() const { return state_->runtime->scripts; }
 
 const EffectSchema& Preset::schema(const std::string& effect) const {
   static const EffectSchema none;
@@ -333,6 +333,7 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
   const StackEntry* current = nullptr;
   ImageRef image = graph.source();
   state.runtime->graph = &graph;
+  state.runtime->depends = {};
   box.diagnostics = &diagnostics;
   auto error = box.run(state.file, [&](lua_State* lua) {
     state.scale_lengths(lua, context);
@@ -351,6 +352,7 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
             .explanation = state.explanation,
             .promises = {},
             .promise_error = {},
+            .depends = std::move(state.runtime->depends),
             .files = {}};
   out.graph = graph.finish(image.id);
   out.promise_error = box.run(state.file, [&](lua_State* lua) {
@@ -358,6 +360,25 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
   });
   out.files = probes();
   return out;
+}
+
+Result<std::vector<std::string>> Preset::named_files(const BuildContext& context) {
+  State& state = *state_;
+  std::vector<std::string> names;
+  const auto note = [&](const std::vector<std::pair<std::string, SettingValue>>& settings) {
+    for (const auto& [name, value] : settings)
+      if (value.type == SettingType::file && !value.choice.empty()) names.push_back(value.choice);
+  };
+  auto error = state.runtime->box->run(state.file, [&](lua_State* lua) {
+    if (state.may_change) state.resolve(lua, context);
+  });
+  if (error) return std::move(*error);
+  for (const StackEntry& entry : *state.entries) {
+    note(entry.settings);
+    if (!entry.mask) continue;
+    for (const EntryMask* part : entry.mask->parts()) note(part->settings);
+  }
+  return names;
 }
 
 Result<std::vector<EntrySpace>> Preset::spaces() {

@@ -167,9 +167,8 @@ class Preset {
   std::vector<std::string> needs() const;
   /// Where names are looked up; a preset that extends another has that one's folder in it too.
   const SearchPath& path() const;
-  /// Every file read so far: preset, library, effects; from the first `evaluate` on also tables and pictures that
-  /// effects read (and where those that were not found would be).
-  const std::vector<std::filesystem::path>& files() const;
+  /// Every script that was read: preset, library, effects, modules. (What frames are made of besides: Build::depends.)
+  const std::vector<std::filesystem::path>& scripts() const;
 
   /// Everything that was looked at on disk so far, also in vain: what the next Build::files holds.
   std::shared_ptr<const FileProbes> probes() const;
@@ -181,6 +180,8 @@ class Preset {
   /// context gives the same value, whatever was evaluated before.
   Result<Build> evaluate(const BuildContext& context, Diagnostics& diagnostics);
   std::uint64_t evaluations() const;  ///< so far
+  /// The values of all settings that name files, as they are in this frame: `evaluate` without building anything.
+  Result<std::vector<std::string>> named_files(const BuildContext& context);
 
  private:
   struct State;

@@ -15,6 +15,7 @@
 #include "core/paths.h"
 #include "script/animated.h"
 #include "script/assets.h"
+#include "script/dependencies.h"
 #include "script/function_ref.h"
 #include "script/preset.h"
 #include "script/sandbox.h"
@@ -100,7 +101,8 @@ struct Runtime {
 
   std::unique_ptr<Sandbox> box;
   SearchPath path;
-  std::vector<std::filesystem::path> files;  ///< every script and asset read
+  std::vector<std::filesystem::path> scripts;  ///< that were read
+  Dependencies depends;                        ///< of the frame that is built
   std::deque<Effect> effects;
   std::map<std::string, int> effect_by_name;
   std::set<std::string> loading;  ///< effects and modules that are being loaded: cycles

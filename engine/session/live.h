@@ -117,8 +117,8 @@ class LiveStack {
 
   /// Any thread.
   LiveStatus status() const;
-  /// Blocks until every change so far is built (`update` has not taken it yet) or has failed. For tests and for
-  /// programs that render a fixed number of frames.
+  /// Blocks until every change so far is built (`update` has not taken it yet) or has failed; what changes from now on
+  /// is not waited for. For tests and for programs that render a fixed number of frames.
   void settle();
 
   struct Counters {

@@ -62,9 +62,13 @@ void LiveBuilder::notify() const {
 
 // ---- what is wanted
 
+/// Files that change faster than builds end would let none of them come to anything. With `mutex_` held.
+bool LiveBuilder::starves() const { return gave_up_ && Clock::now() - *gave_up_ > kStarving; }
+
 /// A script that runs on for something that is no longer wanted comes to an end.
 void LiveBuilder::overtake() {
-  if (until_) until_->store(std::min(until_->load(), (script_began_ + kPatience).time_since_epoch().count()));
+  if (until_ && !starves())
+    until_->store(std::min(until_->load(), (script_began_ + kPatience).time_since_epoch().count()));
   changed_.notify_all();
 }
 
@@ -91,9 +95,13 @@ void LiveBuilder::change(const std::function<void(LiveRequest&)>& apply, bool bu
 void LiveBuilder::look() { files_may_differ(Clock::now(), true); }
 
 void LiveBuilder::settle() {
-  look();
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return !busy_ && !wanted_.any() && dead_.empty(); });
+  const std::uint64_t call = ++asked_;
+  wanted_.files = true;
+  wanted_.note(Clock::now());
+  changed_.notify_all();
+  // Not until nothing is wanted: while a file is written again and again there always is something.
+  changed_.wait(lock, [&] { return answered_ >= call; });
 }
 
 bool LiveBuilder::overtaken() const {
@@ -115,7 +123,7 @@ void LiveBuilder::run() {
     std::vector<BuiltStack> dead = std::move(dead_);
     dead_.clear();
     const Wanted why = std::exchange(wanted_, {});
-    busy_ = true;
+    const std::uint64_t asked = asked_;
     builds_ = why.any();
     const LiveRequest request = request_;
     if (why.any()) request_.for_frame = false;
@@ -127,7 +135,8 @@ void LiveBuilder::run() {
     }
     dead.clear();
     lock.lock();
-    busy_ = builds_ = false;
+    builds_ = false;
+    if (!gave_up_) answered_ = asked;
     const bool was = std::exchange(status_.building, wanted_.request);
     changed_.notify_all();
     if (was != status_.building) {
@@ -328,6 +337,7 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
     const bool both = parts_.structure && times.kind == BuildTimes::Kind::values;
     if (!both) parts_.times = times;
     parts_.done = published_at_ = Clock::now();
+    gave_up_.reset();
     status_.error.reset();
     status_.source_line.clear();
   }
@@ -337,6 +347,7 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
 void LiveBuilder::give_up(bool for_frame) {
   const std::lock_guard lock(mutex_);
   ++counters_.given_up;
+  if (!gave_up_) gave_up_ = Clock::now();
   if (for_frame) request_.for_frame = true;
   wanted_.request = true;
 }
@@ -344,11 +355,12 @@ void LiveBuilder::give_up(bool for_frame) {
 void LiveBuilder::fail(Error error) {
   const bool interrupted = error.kind == ErrorKind::interrupted;
   // A file that was caught half written: the build that follows says what is wrong.
-  if (interrupted || overtaken()) return give_up(false);
+  if (interrupted || (overtaken() && !starves())) return give_up(false);
   std::string line = line_of(error);
   {
     const std::lock_guard lock(mutex_);
     ++counters_.failed;
+    gave_up_.reset();
     status_.error = std::move(error);
     status_.source_line = std::move(line);
   }

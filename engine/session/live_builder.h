@@ -63,8 +63,8 @@ class LiveBuilder {
   // All of these are thread-safe.
   /// Changes what is wanted; with `build` it is built.
   void change(const std::function<void(LiveRequest&)>& apply, bool build);
-  void look();  ///< at the files
-  void settle();
+  void look();    ///< at the files
+  void settle();  ///< see LiveStack
   void also_follow(FileProbes looks);
   BuiltParts take();
   void release(BuiltStack stack);  ///< destroys it on the builder's thread
@@ -102,6 +102,7 @@ class LiveBuilder {
   void publish(BuiltStack built, const BuildTimes& times);
   void fail(Error error);
   void give_up(bool for_frame);
+  bool starves() const;
   void warm_up(Stack& stack, BuildTimes& times);
   bool overtaken() const;
   void follow(FileProbes looks);
@@ -127,10 +128,12 @@ class LiveBuilder {
   std::condition_variable changed_;
   LiveRequest request_;
   Wanted wanted_;
-  bool busy_ = false, ends_ = false;
-  bool builds_ = false;  ///< busy with a build, not only with letting go of what is dead
-  FileProbes new_probes_;         ///< of frames
-  std::shared_ptr<Until> until_;  ///< when the script that is running ends at the latest
+  bool ends_ = false;
+  bool builds_ = false;                       ///< busy with a build, not only with letting go of what is dead
+  std::uint64_t asked_ = 0, answered_ = 0;    ///< calls of `settle`, and those whose changes are built or have failed
+  std::optional<Clock::time_point> gave_up_;  ///< the first build that was, since one came to an end
+  FileProbes new_probes_;                     ///< of frames
+  std::shared_ptr<Until> until_;              ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};
   BuiltParts parts_;
   std::vector<BuiltStack> dead_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Presets and effects used by name, from folders and zips.
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include "cli_test.h"
@@ -53,6 +55,26 @@ TEST_F(Packs, APresetByItsName) {
   EXPECT_EQ(wrong.exit_code, kScript);
   EXPECT_THAT(wrong.err, HasSubstr("there is no preset 'neon_nigth'; allowed: "));
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'neon_night'?"));
+}
+
+TEST_F(Packs, CachesThatOthersMayWriteToAreNotUsed) {
+  zip("kit.zip");
+  const std::string own = "tmp/afterglow-" + std::to_string(geteuid());
+  fs::create_directories(path(own));
+  RunOptions homeless;
+  homeless.environment = {{"AFTERGLOW_CACHE", ""}, {"XDG_CACHE_HOME", "relative"}, {"TMPDIR", text("tmp")}};
+  const auto check = [&](const std::string& home) {
+    homeless.environment["HOME"] = home;
+    const Outcome outcome = run({"check", "kit.zip"}, homeless);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  };
+  fs::permissions(path(own), fs::perms::all);
+  check("");
+  EXPECT_TRUE(fs::is_empty(path(own)));
+  fs::permissions(path(own), fs::perms::owner_all);
+  check("/dev/null");  // nothing can be made there
+  EXPECT_TRUE(fs::exists(path(own + "/packs")));
+  EXPECT_FALSE(fs::exists(path("relative")));
 }
 
 TEST_F(Packs, TheSamePictureFromAFolderAndAZip) {

@@ -1,48 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Sequences: what is read and written under which name, frames that fail, --resume, Ctrl-C.
+// Sequences: what is read and written under which name, frames that fail, Ctrl-C.
 #include <fmt/format.h>
 
 #include <csignal>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
-#include "cli_test.h"
+#include "sequence_test.h"
 
 namespace afterglow::test {
 namespace {
-
-class Sequence : public CliTest {
- protected:
-  void SetUp() override {
-    CliTest::SetUp();
-    make_preset("look.lua");
-    for (int frame = 1; frame <= 4; ++frame) make_exr("in/shot.000" + std::to_string(frame) + ".exr");
-    fs::create_directory(path("out"));
-  }
-
-  Outcome run_all(const std::vector<std::string>& more = {}, RunOptions options = {}) const {
-    std::vector<std::string> arguments{"run", "look.lua", "in/shot.####.exr", "-o", "out/shot.####.png"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments, options);
-  }
-
-  /// Names in out/ but for the notes of --resume.
-  std::vector<std::string> outputs() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path("out")))
-      if (entry.path().filename() != ".afterglow") names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  /// State of each frame in a report, in order.
-  std::vector<std::string> states(const std::string& report) const {
-    std::vector<std::string> all;
-    const auto parsed = nlohmann::json::parse(read(report));
-    for (const auto& frame : parsed.at("frames")) all.push_back(frame.at("state"));
-    return all;
-  }
-};
 
 using ::testing::ElementsAre;
 
@@ -108,45 +74,6 @@ TEST_F(Sequence, ScriptErrorStopsAtOnce) {
   EXPECT_THAT(outcome.err, HasSubstr("no such luck"));
   EXPECT_EQ(outcome.err.find("no such luck"), outcome.err.rfind("no such luck")) << "said once";
   EXPECT_THAT(outputs(), IsEmpty());
-}
-
-TEST_F(Sequence, ResumeSkipsWhatIsDone) {
-  ASSERT_EQ(run_all({"--frames", "1-2"}).exit_code, kDone);
-  const Outcome outcome = run_all({"--resume", "--report", "report.json"});
-  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-  EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date", "done", "done"));
-}
-
-TEST_F(Sequence, ResumeSeesOtherArguments) {
-  write("look.lua",
-        "local fx = require \"afterglow\"\n"
-        "local args = fx.args { stops = fx.float { default = 0 } }\n"
-        "return fx.stack { fx.color_adjustments { post_exposure = args.stops } }\n");
-  ASSERT_EQ(run_all({"--arg", "stops=1", "--frames", "1-2"}).exit_code, kDone);
-  ASSERT_EQ(run_all({"--arg", "stops=1", "--frames", "1-2", "--resume", "--report", "report.json"}).exit_code, kDone);
-  EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date"));
-  ASSERT_EQ(run_all({"--arg", "stops=2", "--frames", "1-2", "--resume", "--report", "report.json"}).exit_code, kDone);
-  EXPECT_THAT(states("report.json"), ElementsAre("done", "done"));
-}
-
-TEST_F(Sequence, ResumeSeesNewInputsLooksAndOptions) {
-  ASSERT_EQ(run_all().exit_code, kDone);
-  // A touched input.
-  fs::last_write_time(path("in/shot.0003.exr"), fs::file_time_type::clock::now() + std::chrono::hours(1));
-  ASSERT_EQ(run_all({"--resume", "--report", "report.json"}).exit_code, kDone);
-  EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date", "done", "up to date"));
-  fs::last_write_time(path("in/shot.0003.exr"), fs::last_write_time(path("in/shot.0002.exr")));
-  // An override.
-  ASSERT_EQ(run_all({"--resume", "--set", "tone_mapping.mode=neutral", "--report", "report.json"}).exit_code, kDone);
-  EXPECT_THAT(states("report.json"), ElementsAre("done", "done", "done", "done"));
-  // The preset itself.
-  write("look.lua", read("look.lua") + "-- a change\n");
-  ASSERT_EQ(run_all({"--resume", "--set", "tone_mapping.mode=neutral", "--report", "report.json"}).exit_code, kDone);
-  EXPECT_THAT(states("report.json"), ElementsAre("done", "done", "done", "done"));
-  // An output that is gone.
-  fs::remove(path("out/shot.0001.png"));
-  ASSERT_EQ(run_all({"--resume", "--set", "tone_mapping.mode=neutral", "--report", "report.json"}).exit_code, kDone);
-  EXPECT_THAT(states("report.json"), ElementsAre("done", "up to date", "up to date", "up to date"));
 }
 
 TEST_F(Sequence, WithoutResumeEverythingIsMadeAgain) {

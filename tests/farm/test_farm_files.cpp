@@ -152,6 +152,33 @@ TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
 }
 
+TEST_F(FarmFiles, TablesOfAnyFrameArePackedAndNotesAreThoseOfOneRun) {
+  make_frames("many", 1, 140, 8, 8);
+  write("id.cube", "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
+  write("half.cube", "LUT_1D_SIZE 2\n0 0 0\n0.5 0.5 0.5\n");
+  write("look.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.stack { fx.lut { file = function(t) return t.frame == 2 and \"half.cube\" or \"id.cube\" end } }\n");
+  RunOptions options;
+  options.environment["AFTERGLOW_HOME"] = AFTERGLOW_PROJECT_FOLDER;
+  const Outcome outcome =
+      farm({"look.lua", "many/shot.####.exr", "-o", "out/", "--jobs", "jobs.json", "--chunk", "3"}, options);
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  for (const int chunk : {0, 1}) {
+    const Outcome made = run_line(jobs["chunks"][chunk]);
+    EXPECT_EQ(made.exit_code, kDone) << made.err;
+  }
+  const Outcome rest = run(
+      {"run", "look.lua", "many/shot.####.exr", "-o", "out/", "--frames", "1-7", "--resume", "--report", "report.json"},
+      options);
+  EXPECT_EQ(rest.exit_code, kDone) << rest.err;
+  const auto frames = nlohmann::json::parse(read("report.json"))["frames"];
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(frames[i]["state"], i < 6 ? "up to date" : "done") << i;
+  const auto job = nlohmann::json::parse(read(fs::relative(job_of("out"), path("")) / "job.json"));
+  EXPECT_EQ(job["environment"]["AFTERGLOW_HOME"], AFTERGLOW_PROJECT_FOLDER);
+}
+
 TEST_F(FarmFiles, WhatWasPackedMustStayAsItIs) {
   ASSERT_EQ(write_jobs().exit_code, kDone);
   const auto jobs = nlohmann::json::parse(read("jobs.json"));

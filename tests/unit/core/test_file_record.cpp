@@ -103,6 +103,31 @@ TEST_F(Record, ErrorsOfReadingAreTheSameTheNextTime) {
   EXPECT_FALSE(first_changed(looks));
 }
 
+TEST_F(Record, KnowsLargeFilesByTheirStamps) {
+  constexpr std::uintmax_t kLarge = (64u << 20) + 1;
+  write("large", "");
+  fs::resize_file(folder_ / "large", kLarge);
+  const auto looks = noted([&](FileRecord& record) {
+    EXPECT_TRUE(read_file(folder_ / "large", kLarge, &record).ok());
+    EXPECT_FALSE(read_file(folder_ / "large", kLarge - 1, &record).ok());
+  });
+  EXPECT_FALSE(first_changed(looks));
+  EXPECT_FALSE(first_changed(looks, true));
+  fs::resize_file(folder_ / "large", kLarge + 1);
+  EXPECT_EQ(first_changed(looks), folder_ / "large");
+}
+
+TEST_F(Record, FilesHaveTheHashOfTheirContent) {
+  for (const std::size_t size : {0u, 1u, 65536u, 65537u, 300000u}) {
+    std::string text(size, 'x');
+    if (size > 0) text.back() = 'y';
+    write("a", text);
+    EXPECT_EQ(hash_file(folder_ / "a").value(), hash_text(text)) << size;
+  }
+  EXPECT_FALSE(hash_file(folder_).ok());
+  EXPECT_FALSE(hash_file(folder_ / "missing").ok());
+}
+
 TEST_F(Record, ListsFolders) {
   const auto looks = noted([&](FileRecord& record) { record.note(folder_ / "packs", FileProbe::Kind::listing); });
   EXPECT_FALSE(first_changed(looks));

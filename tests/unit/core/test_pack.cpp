@@ -10,6 +10,7 @@
 
 #include "core/file.h"
 #include "core/pack.h"
+#include "core/zip_bytes.h"
 
 namespace afterglow {
 namespace {
@@ -88,6 +89,29 @@ TEST_F(Pack, WhatIsBrokenInTheCacheIsMadeAnew) {
   EXPECT_EQ(open(zip).value(), opened);
   EXPECT_EQ(read_file(opened / "a.txt").value(), "one");
   EXPECT_EQ(read_file(opened / "b.txt").value(), "two");
+}
+
+TEST_F(Pack, WhatIsOfTheSameSizeInTheCacheIsLookedInto) {
+  const fs::path zip = make({{"a.txt", "one"}, {"b.txt", "two"}});
+  const fs::path opened = open(zip).value();
+  std::ofstream(opened / "b.txt") << "not";
+  EXPECT_EQ(open(zip).value(), opened);
+  EXPECT_EQ(read_file(opened / "b.txt").value(), "two");
+}
+
+TEST_F(Pack, IsUnpackedFromTheBytesThatWereRead) {
+  const fs::path first = make({{"a.txt", "one"}}, "first.zip");
+  const std::string bytes = read_file(first).value();
+  const Zip zip = open_zip_bytes(bytes);
+  ASSERT_NE(zip, nullptr);
+  ASSERT_EQ(unzGoToFirstFile(zip.get()), UNZ_OK);
+  ASSERT_EQ(unzOpenCurrentFile(zip.get()), UNZ_OK);
+  std::string content(10, ' ');
+  content.resize(static_cast<std::size_t>(std::max(0, unzReadCurrentFile(zip.get(), content.data(), 10))));
+  EXPECT_EQ(content, "one");
+  EXPECT_EQ(unzCloseCurrentFile(zip.get()), UNZ_OK);
+  EXPECT_EQ(open_zip_bytes("no zip"), nullptr);
+  EXPECT_EQ(open_zip_bytes(""), nullptr);
 }
 
 TEST_F(Pack, NewContentIsANewFolder) {

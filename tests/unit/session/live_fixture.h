@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <mutex>
 
 #include "session/live_session.h"
@@ -70,6 +71,7 @@ return fx.effect {
   void open(LiveOptions options = {}) {
     options.stack.keep_images = true;
     options.notify = [this] {
+      if (at_notify_) at_notify_();
       const std::lock_guard lock(mutex_);
       ++notified_;
       changed_.notify_all();
@@ -148,6 +150,7 @@ return fx.effect {
   std::mutex mutex_;
   std::condition_variable changed_;
   int notified_ = 0;
+  std::function<void()> at_notify_;  ///< set before `open`
   std::unique_ptr<LiveSession> session_;
 };
 

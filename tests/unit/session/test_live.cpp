@@ -2,6 +2,7 @@
 // Reloads: what is built again, what stays, and what an error leaves behind. Real files, no window.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <thread>
 
 #include "live_fixture.h"
@@ -183,6 +184,24 @@ TEST_F(Live, InAStormOfEditsTheLastOneWins) {
   EXPECT_TRUE(comes(25.f));
   live().settle();
   EXPECT_LE(live().counters().stacks, 2u);
+}
+
+TEST_F(Live, WaitingEndsThoughFilesChangeAllTheTime) {
+  constexpr int kEnd = 50;
+  std::atomic<bool> storm = false;
+  std::atomic<int> edits = 0;
+  at_notify_ = [&] {  // by each build, on its thread
+    if (!storm || ++edits >= kEnd) return;
+    save(10 + edits);
+    live().reload();
+  };
+  open_unwatched();
+  storm = true;
+  save(4);
+  live().settle();
+  EXPECT_LT(edits, kEnd) << "it waited for the end of the storm";
+  storm = false;
+  EXPECT_GE(shown(), 2.f) << "what lay there when it was called, or later";
 }
 
 TEST_F(Live, AnEffectMayBeRenamed) {
