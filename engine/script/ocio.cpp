@@ -2,6 +2,7 @@
 #include "script/ocio.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -87,6 +88,19 @@ void check_table(Runtime& runtime, const ChosenConfig& config, const std::string
   if (auto sound = check_table(*content, table.path, TableUse::of_config); !sound) throw ScriptError{sound.error()};
 }
 
+/// All that decides what becomes of a request: configurations take variables of the environment into account, too.
+Hash store_key(const Runtime& runtime, const std::string& request, const std::string& config,
+               const OcioSurvey& survey) {
+  Hasher hasher;
+  hasher.add("ocio").add(request).add(hash_text(config).hex());
+  for (const auto& table : survey.files) {
+    const auto seen = content_seen(runtime, table.path, kMaxTable);
+    hasher.add(table.path.string()).add(seen ? seen->hex() : "");
+  }
+  for (char** variable = environ; variable && *variable; ++variable) hasher.add(*variable);
+  return hasher.finish();
+}
+
 }  // namespace
 
 const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::string& name, OcioRequest request) {
@@ -97,7 +111,7 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
       fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", config.file.string(), request.from, request.display, request.view,
                   request.to_space, request.to, request.looks, request.inverse);
   const auto known = runtime.assets.ocio.find(key);
-  if (known != runtime.assets.ocio.end()) return known->second;
+  if (known != runtime.assets.ocio.end()) return *known->second;
   runtime.box->charge(kConfigCost);
   const Sandbox::Pause pause(*runtime.box);
   note_file(runtime, config.file);
@@ -117,12 +131,18 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
              fmt::format("{} ({})", fault->what, config.file.filename().string()), fault->allowed, fault->nearest});
   }
   for (const auto& table : survey->files) check_table(runtime, config, *text, table);
-  auto made = ocio_shader(request);
-  if (!made) throw ScriptError{std::move(made).error()};
-  LoadedOcio loaded{"ocio/" + hash_text(made->text).hex(), nullptr, config.file};
-  if (!made->table.empty()) loaded.table = make_data(runtime, made->size, std::move(made->table), config.file);
-  runtime.path.made->add(loaded.shader, {std::move(made->text), config.file});
-  return runtime.assets.ocio.emplace(key, std::move(loaded)).first->second;
+  auto loaded = runtime.assets.store->get<LoadedOcio>(store_key(runtime, key, *text, *survey), look_of(runtime), [&] {
+    auto made = ocio_shader(request);
+    if (!made) throw ScriptError{std::move(made).error()};
+    std::string name = "ocio/" + hash_text(made->text).hex();
+    std::shared_ptr<const ImageData> table;
+    if (!made->table.empty()) table = make_data(made->size, std::move(made->table), config.file);
+    return std::make_shared<const LoadedOcio>(
+        LoadedOcio{std::move(name), std::move(made->text), std::move(table), config.file});
+  });
+  count_data(runtime, loaded->table.get());
+  runtime.path.made->add(loaded->shader, {loaded->text, config.file});
+  return *runtime.assets.ocio.emplace(key, std::move(loaded)).first->second;
 }
 
 }  // namespace afterglow::script
