@@ -211,8 +211,8 @@ AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
  * "glow.enabled", "at", "order", "opacity", "blend", "mask" (a number) and the settings of its mask
  * ("glow.mask.luma.from"). A value that was set stays over reloads, and stands above what the preset says, also over
  * curves and volumes. Where the preset has come to have no such setting, it is left out with a message, and counts
- * again when there is one. Where nothing is followed, scripts, shaders and look-up tables that were read are not read
- * again: only afterglow_stack_reload does that. One thread at a time, for all functions below. */
+ * again when there is one. Where nothing is followed, scripts, shaders, look-up tables and pictures that were read are
+ * not read again: only afterglow_stack_reload does that. One thread at a time, for all functions below. */
 
 /* The entries in the order of execution with their settings, as JSON:
  *   [{"name", "effect", "at", "order", "enabled", "file", "line",

@@ -5,6 +5,7 @@
 
 #include "api/backend.h"
 #include "core/file_record.h"
+#include "script/asset_store.h"
 #include "session/live.h"
 
 namespace afterglow::api {
@@ -15,7 +16,9 @@ namespace {
 class Loaded : public Source {
  public:
   Loaded(SharedDevice& device, const BackendOptions& options, Diagnostics& diagnostics)
-      : device_(device), options_(options), diagnostics_(diagnostics) {}
+      : device_(device), options_(options), diagnostics_(diagnostics) {
+    options_.stack.preset.assets = std::make_shared<AssetStore>();
+  }
 
   Stack& stack() override { return *stack_; }
   Result<void> set(const Given& given, MustFit must_fit) override {

@@ -20,6 +20,10 @@
 namespace afterglow::api {
 namespace {
 
+/// With it no place of a picture overflows; pictures in memory have less.
+constexpr std::ptrdiff_t kLargestStride = std::ptrdiff_t{1} << 46;
+bool in_reach(std::ptrdiff_t stride) { return stride >= -kLargestStride && stride <= kLargestStride; }
+
 constexpr float kFarDepth = 1e10f;  // as image/color_encoding.cpp has it
 
 struct Allowed {
@@ -217,8 +221,9 @@ Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const c
              .samples = given.samples};
   const auto pixel_bytes = static_cast<std::ptrdiff_t>(out.sample_bytes() * static_cast<std::size_t>(out.channels));
   out.pixel_stride = given.pixel_stride == 0 ? pixel_bytes : given.pixel_stride;
-  out.row_stride = given.row_stride == 0 ? out.pixel_stride * given.width : given.row_stride;
   if (out.pixel_stride < pixel_bytes) return fail(fmt::format("pixel_stride is less than {} bytes", pixel_bytes));
+  if (!in_reach(out.pixel_stride) || !in_reach(given.row_stride)) return fail("a stride is more than 2^46 bytes");
+  out.row_stride = given.row_stride == 0 ? out.pixel_stride * given.width : given.row_stride;
   if (std::abs(out.row_stride) < out.pixel_stride * (given.width - 1) + pixel_bytes)
     return fail("row_stride is less than a row");
   return out;

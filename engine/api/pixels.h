@@ -32,7 +32,7 @@ enum class ImageRole { color, depth, normal, motion };
 /// Errors (usage): no picture is so small or so large.
 Result<void> check_size(Size size);
 
-/// Errors (usage): no data, sizes, channels or samples that the role does not allow, strides shorter than a pixel.
+/// Errors (usage): no data, sizes, channels or samples that the role does not allow, strides shorter than a pixel or a row, or beyond all memory.
 Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const char* name);
 
 /// Samples that had to be made finite, or were negative colours. Thread-safe.

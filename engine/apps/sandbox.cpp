@@ -5,6 +5,7 @@
 
 #include "core/own_file.h"
 #include "core/paths.h"
+#include "core/temporary.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -13,13 +14,26 @@ namespace {
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
+/// Those of GPUs, and those that are nobody's: no terminals, disks, cameras, shared memory of others.
+void add_devices(Confinement& left) {
+  for (const char* name : {"null", "zero", "full", "random", "urandom", "dri", "udmabuf", "dma_heap", "dxg"})
+    left.devices.push_back(fs::path("/dev") / name);
+  left.list.emplace_back("/dev");
+  std::error_code ec;
+  for (fs::directory_iterator it("/dev", ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    for (const char* begin : {"nvidia", "nvhost", "nvmap", "mali", "kgsl", "pvr"})
+      if (name.starts_with(begin)) left.devices.push_back(it->path());
+  }
+}
+
 /// What libraries and drivers need that every program on the machine may read.
 void add_system(Confinement& left) {
   left.execute.insert(left.execute.end(), {"/usr", "/lib", "/lib64", "/bin", "/opt"});
   for (const char* file : {"/etc/ld.so.cache", "/etc/vulkan", "/etc/glvnd", "/etc/drirc", "/etc/localtime",
                            "/etc/nvidia", "/etc/alternatives", "/proc", "/sys"})
     left.read.emplace_back(file);
-  left.devices.emplace_back("/dev");
+  add_devices(left);
   const fs::path own = own_file();
   if (!own.empty()) left.execute.insert(left.execute.end(), {folder_of(own), folder_of(folder_of(own)) / "lib"});
   // Layers and drivers that someone has chosen by the environment.
@@ -34,6 +48,19 @@ void add_system(Confinement& left) {
     left.read.push_back(fs::path(cache) / "mesa_shader_cache");
   else if (const char* home = std::getenv("HOME"))
     left.read.push_back(fs::path(home) / ".cache" / "mesa_shader_cache");
+}
+
+/// Files become others in their folder when they are whole; devices and pipes are written to as they stand.
+void add_output(Confinement& left, const fs::path& output) {
+  if (output.empty() || output == "-") return;
+  const fs::path target = behind_links(output);
+  std::error_code ignored;
+  const auto status = fs::status(output, ignored);
+  const bool stands = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+  if (stands || output.string().starts_with("/dev/"))
+    left.devices.push_back(output);
+  else
+    left.write.push_back(fs::is_directory(status) ? output : folder_of(target));
 }
 
 }  // namespace
@@ -59,11 +86,7 @@ Result<Confinement> sandbox_of(const RunArguments& a) {
   for (const auto& input : a.files.inputs) picture(input);
   for (const auto* layer : {&a.layers.depth, &a.layers.normal, &a.layers.motion})
     if (const LayerChoice choice = parse_layer_choice(*layer); !choice.file.empty()) picture(choice.file.string());
-  std::error_code ignored;
-  left.write.push_back(fs::is_directory(a.files.output, ignored) ? fs::path(a.files.output)
-                                                                 : folder_of(a.files.output));
-  for (const auto& file : {a.report, a.lock})
-    if (!file.empty()) left.write.push_back(folder_of(file));
+  for (const auto& output : {a.files.output, a.report, a.lock}) add_output(left, output);
   return left;
 }
 

@@ -6,20 +6,17 @@
 #if defined(__linux__) && __has_include(<linux/landlock.h>) && (defined(__x86_64__) || defined(__aarch64__))
 #define AFTERGLOW_CONFINES 1
 #include <fcntl.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
 #include <linux/landlock.h>
-#include <linux/seccomp.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 #include <iterator>
 
+#include "core/confine_calls.h"
 #include "core/file_descriptor.h"
 #endif
 
@@ -88,61 +85,6 @@ Result<void> confine_files(const Confinement& left) {
   AFTERGLOW_CHECK(rules.allow(left.write, kList | kRead | kWriteFile | kTruncate | kChange));
   AFTERGLOW_CHECK(rules.allow(left.devices, kList | kRead | kWriteFile));
   if (syscall(SYS_landlock_restrict_self, set.get(), 0) != 0) return failed("Landlock");
-  return {};
-}
-
-#ifdef __x86_64__
-constexpr std::uint32_t kProcessor = AUDIT_ARCH_X86_64, kOtherCalls = 0x40000000;  // those of x32
-#else
-constexpr std::uint32_t kProcessor = AUDIT_ARCH_AARCH64, kOtherCalls = ~0u;
-#endif
-
-/// Calls by which a process reaches others, the network or the kernel's less trodden parts.
-Result<void> confine_calls() {
-  constexpr std::uint32_t kForbidden[] = {SYS_socket,
-                                          SYS_socketpair,
-                                          SYS_connect,
-                                          SYS_bind,
-                                          SYS_listen,
-                                          SYS_execve,
-                                          SYS_execveat,
-                                          SYS_ptrace,
-                                          SYS_process_vm_readv,
-                                          SYS_process_vm_writev,
-                                          SYS_io_uring_setup,
-                                          SYS_bpf,
-                                          SYS_mount,
-                                          SYS_umount2,
-                                          SYS_pivot_root,
-                                          SYS_unshare,
-                                          SYS_setns,
-                                          SYS_keyctl,
-                                          SYS_add_key,
-                                          SYS_request_key,
-                                          SYS_perf_event_open,
-                                          SYS_userfaultfd,
-                                          SYS_kexec_load,
-                                          SYS_init_module,
-                                          SYS_finit_module,
-                                          SYS_delete_module};
-  std::vector<sock_filter> program;
-  const auto load = [&](std::size_t offset) {
-    program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)));
-  };
-  const auto forbid = [&] { program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM)); };
-  load(offsetof(seccomp_data, arch));
-  program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kProcessor, 1, 0));
-  forbid();
-  load(offsetof(seccomp_data, nr));
-  program.push_back(BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, kOtherCalls, 0, 1));
-  forbid();
-  for (const auto call : kForbidden) {
-    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, call, 0, 1));
-    forbid();
-  }
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
-  const sock_fprog filter{.len = static_cast<unsigned short>(program.size()), .filter = program.data()};
-  if (syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &filter) != 0) return failed("seccomp");
   return {};
 }
 

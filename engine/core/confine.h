@@ -18,9 +18,10 @@ struct Confinement {
   std::vector<std::filesystem::path> devices;  ///< read and write what is there
 };
 
-/// From here on nothing but that can be opened, no socket can be made, no program started and no other process looked
-/// into (Linux: Landlock and seccomp). Threads that are there already are not restricted: none may be. Errors: device
-/// (the kernel lacks it, or has it turned off), other (there are threads).
+/// From here on nothing but that can be opened, no file changed but by what is left to write, no socket can be made, no
+/// program started, no other process looked into, signalled or talked to (Linux: Landlock and seccomp). The mode and
+/// owner of an open file can still be changed. Threads that are there already are not restricted: none may be. Errors:
+/// device (the kernel lacks it, or has it turned off), other (there are threads).
 Result<void> confine(const Confinement& left);
 
 }  // namespace afterglow

@@ -114,16 +114,20 @@ std::optional<std::string> FileRecord::kept(const fs::path& path) const {
   return known == kept_.end() ? std::nullopt : std::optional(known->second);
 }
 
-bool FileRecord::keeps(const fs::path& path) const {
-  if (!keeps_) return false;
+std::optional<Hash> FileRecord::read_before(const fs::path& path) const {
+  if (!keeps_) return std::nullopt;
   const std::lock_guard lock(mutex_);
-  return kept_.contains(whole_path(path));
+  const auto known = read_.find(whole_path(path));
+  return known == read_.end() ? std::nullopt : std::optional(known->second);
 }
 
 void FileRecord::keep(const fs::path& path, std::string_view content) {
   if (!keeps_) return;
+  const Hash hash = hash_text(content);
   const std::lock_guard lock(mutex_);
-  if (content.size() > kMostKept - kept_bytes_ || !kept_.emplace(whole_path(path), content).second) return;
+  if (!read_.emplace(whole_path(path), hash).second) return;
+  if (content.size() > kMostKept - kept_bytes_) return;
+  kept_.emplace(whole_path(path), content);
   kept_bytes_ += content.size();
 }
 

@@ -46,7 +46,10 @@ class FileRecord {
 
   /// The content that was kept. None: it was not read, or is not kept.
   std::optional<std::string> kept(const std::filesystem::path& path) const;
-  bool keeps(const std::filesystem::path& path) const;
+  /// Whether it was read by one that keeps: then it counts as being there.
+  bool keeps(const std::filesystem::path& path) const { return read_before(path).has_value(); }
+  /// The hash of the content that one that keeps has read first, also where that is too large to be kept.
+  std::optional<Hash> read_before(const std::filesystem::path& path) const;
 
   /// A content that is about to be read; `done` with what was found. Read errors are looks too. Null: notes nothing.
   class Reading {
@@ -72,6 +75,7 @@ class FileRecord {
   bool keeps_ = false;
   std::map<std::filesystem::path, std::string> kept_;
   std::size_t kept_bytes_ = 0;
+  std::map<std::filesystem::path, Hash> read_;       ///< of one that keeps
   mutable std::shared_ptr<const FileProbes> taken_;  ///< null: something was added since
 };
 

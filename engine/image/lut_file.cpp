@@ -10,12 +10,6 @@
 #include "image/ocio_module.h"
 
 namespace afterglow {
-namespace {
-
-constexpr std::size_t kMaxFile = 128u << 20;  // 129³ lines of 50 letters
-
-}  // namespace
-
 Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, const std::string& correction) {
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file.string()}; };
   std::string extension = lower(file.extension().string());
@@ -26,7 +20,7 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, cons
     return Error{ErrorKind::script, fmt::format("'{}' is no format of look-up tables", extension),
                  file.string(),     0,
                  join(known),       nearest_name(extension, known)};
-  auto text = read_file(file, kMaxFile, record);
+  auto text = read_file(file, kMostLutBytes, record);
   if (!text) return fail(text.error().message);
   AFTERGLOW_CHECK(check_table(*text, file, TableUse::of_look));
   // OpenColorIO puts variables of the environment into paths.

@@ -3,6 +3,7 @@
 // do, with their numbers in one image.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -40,7 +41,8 @@ struct Lut {
 };
 
 inline constexpr int kMaxLutSteps = 6;
-inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional tables
+inline constexpr std::size_t kMostLutBytes = 128u << 20;  ///< of a file: 129³ lines of 50 letters
+inline constexpr int kLutRow = 256;                       ///< colours a row of one-dimensional tables
 
 /// Thread-safe. Errors (script, with the file and, for .cube, the line): missing, unknown format, what the file holds
 /// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.

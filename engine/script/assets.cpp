@@ -57,6 +57,16 @@ std::vector<float> rgba(const Image& image) {
   return out;
 }
 
+/// What `make` gives for a file, now or before, of this look or of the two before it.
+template <class T, class Make>
+std::shared_ptr<const T> stored(Runtime& runtime, const char* kind, const fs::path& file, const std::string& how,
+                                std::size_t limit, const Make& make) {
+  const auto seen = content_seen(runtime, file, limit);
+  if (!seen) return make();  // which says what is wrong
+  const Hash key = Hasher().add(kind).add(file.string()).add(how).add(seen->hex()).finish();
+  return runtime.assets.store->get<T>(key, look_of(runtime), make);
+}
+
 }  // namespace
 
 void fail_at(lua_State* lua, const std::string& what, const AssetFault& fault) {
@@ -83,12 +93,7 @@ bool is_given_by_command(const Runtime& runtime, const std::string& name) {
   return setting && setting->second.type == SettingType::file && setting->second.number[0] == 1;
 }
 
-std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vector<float> pixels,
-                                           const fs::path& file) {
-  runtime.assets.bytes += pixels.size() * sizeof(float);
-  if (runtime.assets.bytes > kMaxBytes)
-    throw failure(
-        fmt::format("'{}' and what was read before take more than {} MiB", file.filename().string(), kMaxBytes >> 20));
+std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const fs::path& file) {
   ImageData data{size, std::move(pixels), {}, file};
   const Hash of_pixels = hash_bytes(data.pixels.data(), data.pixels.size() * sizeof(float));
   data.hash = Hasher()
@@ -97,6 +102,28 @@ std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vec
                   .add(of_pixels.hex())
                   .finish();
   return std::make_shared<const ImageData>(std::move(data));
+}
+
+void count_data(Runtime& runtime, const ImageData* data) {
+  if (!data) return;
+  runtime.assets.bytes += data->pixels.size() * sizeof(float);
+  if (runtime.assets.bytes > kMaxBytes)
+    throw failure(fmt::format("'{}' and what was read before take more than {} MiB", data->file.filename().string(),
+                              kMaxBytes >> 20));
+}
+
+std::optional<Hash> content_seen(const Runtime& runtime, const fs::path& file, std::size_t limit) {
+  FileRecord* record = runtime.path.record.get();
+  if (record)
+    if (auto before = record->read_before(file)) return before;
+  const auto text = read_file(file, limit, record);
+  return text ? std::optional(hash_text(*text)) : std::nullopt;
+}
+
+std::uint64_t look_of(Runtime& runtime) {
+  Assets& assets = runtime.assets;
+  if (assets.look == 0) assets.look = assets.store->begin_look();
+  return assets.look;
 }
 
 fs::path find_asset(lua_State* lua, const std::string& what, const std::string& name) {
@@ -126,15 +153,19 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
 
 const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::string& correction) {
   Runtime& runtime = Runtime::of(lua);
-  const auto known = runtime.assets.luts.find({file, correction});
-  if (known != runtime.assets.luts.end()) return known->second;
+  auto& known = runtime.assets.luts[{file, correction}];
+  if (known) return *known;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  auto read = read_lut(file, runtime.path.record.get(), correction);
-  if (!read) throw ScriptError{std::move(read).error()};
-  const bool unit = gives_unit(*read);
-  LoadedLut loaded{std::move(read->steps), make_data(runtime, read->size, std::move(read->table), file), unit};
-  return runtime.assets.luts.emplace(std::pair(file, correction), std::move(loaded)).first->second;
+  auto loaded = stored<LoadedLut>(runtime, "table", file, correction, kMostLutBytes, [&] {
+    auto read = read_lut(file, runtime.path.record.get(), correction);
+    if (!read) throw ScriptError{std::move(read).error()};
+    const bool unit = gives_unit(*read);
+    return std::make_shared<const LoadedLut>(
+        LoadedLut{std::move(read->steps), make_data(read->size, std::move(read->table), file), unit});
+  });
+  count_data(runtime, loaded->table.get());
+  return *(known = std::move(loaded));
 }
 
 std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& file) {
@@ -143,18 +174,21 @@ std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& fi
   if (known) return known;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  Diagnostics ignored;
-  ReadOptions options;
-  options.max_side = kMaxSide;
-  options.max_bytes = kMaxBytes;
-  if (runtime.path.record) runtime.path.record->note(file, FileProbe::Kind::stamp);
-  auto picture = read_picture(file, options, ignored);
-  if (!picture) {
-    Error error = std::move(picture).error();
-    error.kind = ErrorKind::script;  // it is a part of the look
-    throw ScriptError{std::move(error)};
-  }
-  return known = make_data(runtime, picture->color.size(), rgba(picture->color), file);
+  auto loaded = stored<ImageData>(runtime, "picture", file, "", kMaxBytes, [&] {
+    Diagnostics ignored;
+    ReadOptions options;
+    options.max_side = kMaxSide;
+    options.max_bytes = kMaxBytes;
+    auto picture = read_picture(file, options, ignored);
+    if (!picture) {
+      Error error = std::move(picture).error();
+      error.kind = ErrorKind::script;  // it is a part of the look
+      throw ScriptError{std::move(error)};
+    }
+    return make_data(picture->color.size(), rgba(picture->color), file);
+  });
+  count_data(runtime, loaded.get());
+  return known = std::move(loaded);
 }
 
 }  // namespace afterglow::script

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/image_data.h"
 #include "image/ocio.h"
+#include "script/asset_store.h"
 #include "script/dependencies.h"
 
 struct lua_State;
@@ -30,6 +32,7 @@ struct LoadedLut {
 /// A part of a configuration of OpenColorIO, as a shader.
 struct LoadedOcio {
   std::string shader;                      ///< its name for g:pass
+  std::string text;                        ///< of the shader
   std::shared_ptr<const ImageData> table;  ///< that it reads; null: none
   std::filesystem::path config;
   Dependencies depends;  ///< on what it was made of
@@ -37,10 +40,13 @@ struct LoadedOcio {
 
 /// What one state has read: a file is read once, so that every build of a preset sees the same.
 struct Assets {
-  std::map<std::pair<std::filesystem::path, std::string>, LoadedLut> luts;  ///< by file and correction
-  std::map<std::string, LoadedOcio> ocio;                                   ///< by request
+  /// By file and correction.
+  std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const LoadedLut>> luts;
+  std::map<std::string, std::shared_ptr<const LoadedOcio>> ocio;  ///< by request
   std::map<std::filesystem::path, std::shared_ptr<const ImageData>> pictures;
   std::size_t bytes = 0;
+  std::shared_ptr<AssetStore> store;  ///< what other states have read
+  std::uint64_t look = 0;             ///< the store's number of this one; 0: it has asked for nothing yet
 };
 
 /// The file of that name beside the preset, along the search path, in the installation's assets/; links that lead out
@@ -66,8 +72,12 @@ struct AssetFault {
 bool may_read(const Runtime& runtime, const std::filesystem::path& file);
 /// Did the command line give this as a file for a setting of the entry being built? Then it may be any file.
 bool is_given_by_command(const Runtime& runtime, const std::string& name);
-/// Errors: throws ScriptError, when all data of the state takes too much memory.
-std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vector<float> pixels,
-                                           const std::filesystem::path& file);
+std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const std::filesystem::path& file);
+/// Counts data that the state holds; null is nothing. Errors: throws ScriptError, when all of it takes too much memory.
+void count_data(Runtime& runtime, const ImageData* data);
+/// What the file held when this look, or whoever it shares a record with, read it first. None: it cannot be read.
+std::optional<Hash> content_seen(const Runtime& runtime, const std::filesystem::path& file, std::size_t limit);
+/// The state's number in its store.
+std::uint64_t look_of(Runtime& runtime);
 
 }  // namespace afterglow::script

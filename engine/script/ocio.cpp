@@ -2,6 +2,7 @@
 #include "script/ocio.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -110,6 +111,19 @@ Dependencies dependencies(const ChosenConfig& config, const std::string& text, c
   return out;
 }
 
+/// All that decides what becomes of a request: configurations take variables of the environment into account, too.
+Hash store_key(const Runtime& runtime, const std::string& request, const std::string& config,
+               const OcioSurvey& survey) {
+  Hasher hasher;
+  hasher.add("ocio").add(request).add(hash_text(config).hex());
+  for (const auto& table : survey.files) {
+    const auto seen = content_seen(runtime, table.path, kMaxTable);
+    hasher.add(table.path.string()).add(seen ? seen->hex() : "");
+  }
+  for (char** variable = environ; variable && *variable; ++variable) hasher.add(*variable);
+  return hasher.finish();
+}
+
 }  // namespace
 
 const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::string& name, OcioRequest request) {
@@ -121,8 +135,8 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
                   request.to_space, request.to, request.looks, request.inverse);
   const auto known = runtime.assets.ocio.find(key);
   if (known != runtime.assets.ocio.end()) {
-    runtime.depends.add(known->second.depends);
-    return known->second;
+    runtime.depends.add(known->second->depends);
+    return *known->second;
   }
   runtime.box->charge(kConfigCost);
   const Sandbox::Pause pause(*runtime.box);
@@ -142,16 +156,22 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
              fmt::format("{} ({})", fault->what, config.file.filename().string()), fault->allowed, fault->nearest});
   }
   for (const auto& table : survey->files) check_table(runtime, config, *text, table);
-  auto made = ocio_shader(request);
-  if (!made) throw ScriptError{std::move(made).error()};
-  LoadedOcio loaded{"ocio/" + hash_text(made->text).hex(), nullptr, config.file, {}};
-  if (!made->table.empty()) loaded.table = make_data(runtime, made->size, std::move(made->table), config.file);
-  loaded.depends = dependencies(config, *text, *survey);
-  loaded.depends.generated[request_text(request)] =
-      Hasher().add(made->text).add(loaded.table ? loaded.table->hash.hex() : "").finish();
-  runtime.depends.add(loaded.depends);
-  runtime.path.made->add(loaded.shader, {std::move(made->text), config.file});
-  return runtime.assets.ocio.emplace(key, std::move(loaded)).first->second;
+  auto loaded = runtime.assets.store->get<LoadedOcio>(store_key(runtime, key, *text, *survey), look_of(runtime), [&] {
+    auto made = ocio_shader(request);
+    if (!made) throw ScriptError{std::move(made).error()};
+    std::string name = "ocio/" + hash_text(made->text).hex();
+    std::shared_ptr<const ImageData> table;
+    if (!made->table.empty()) table = make_data(made->size, std::move(made->table), config.file);
+    Dependencies depends = dependencies(config, *text, *survey);
+    depends.generated[request_text(request)] =
+        Hasher().add(made->text).add(table ? table->hash.hex() : "").finish();
+    return std::make_shared<const LoadedOcio>(
+        LoadedOcio{std::move(name), std::move(made->text), std::move(table), config.file, std::move(depends)});
+  });
+  count_data(runtime, loaded->table.get());
+  runtime.depends.add(loaded->depends);
+  runtime.path.made->add(loaded->shader, {loaded->text, config.file});
+  return *runtime.assets.ocio.emplace(key, std::move(loaded)).first->second;
 }
 
 }  // namespace afterglow::script

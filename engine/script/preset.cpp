@@ -191,6 +191,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   AFTERGLOW_TRY(state->runtime,
                 Runtime::create(search_path_for(file, options.paths, std::move(record), options.installation),
                                 options.limits, diagnostics));
+  state->runtime->assets.store = options.assets ? options.assets : std::make_shared<AssetStore>();
   Sandbox& box = *state->runtime->box;
   const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {

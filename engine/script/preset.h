@@ -24,6 +24,8 @@
 
 namespace afterglow {
 
+class AssetStore;  // script/asset_store.h
+
 /// In the scene: x, y, z in its units.
 using Position = std::array<double, 3>;
 
@@ -112,6 +114,8 @@ struct PresetOptions {
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   /// Takes down what is looked at, also by a preset that fails to load. Null: the preset's own (Build::files).
   std::shared_ptr<FileRecord> record = {};
+  /// What tables and pictures became for the looks before, and for this one. Null: the preset's own.
+  std::shared_ptr<AssetStore> assets = {};
   ScriptLimits limits;
 };
 

@@ -2,6 +2,7 @@
 #include "session/live.h"
 
 #include "core/stopwatch.h"
+#include "script/asset_store.h"
 #include "session/live_builder.h"
 
 namespace afterglow {
@@ -48,6 +49,7 @@ Result<std::unique_ptr<LiveStack>> LiveStack::open(Device& device, const std::fi
   constexpr int kRowsWhileEdited = 4;
   LiveOptions own = options;
   own.stack.most_rows = std::min(own.stack.most_rows, kRowsWhileEdited);
+  if (!own.stack.preset.assets) own.stack.preset.assets = std::make_shared<AssetStore>();
   const auto& cache = options.stack.cache_folder;
   if (!own.stack.shared) {
     own.stack.shared = std::make_shared<SharedKernels>(cache.empty() ? cache : cache / "shaders");

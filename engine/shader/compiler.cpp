@@ -22,6 +22,7 @@
 #include "shader/kernel_file.h"
 #include "shader/loop_places.h"
 #include "shader/reflect.h"
+#include "shader/source_hash.h"
 #include "shader/spirv_module.h"
 #include "shader/spirv_passes.h"
 #include "shader/weight.h"
@@ -49,7 +50,7 @@ struct KernelCompiler::State {
 
   fs::path file_for(const Hash& text) const {
     static const std::string version = glsl_compiler_version();
-    const Hash key = Hasher().add(text.hex()).add(version).add(kKernelFileVersion).finish();
+    const Hash key = Hasher().add(text.hex()).add(version).add(kShaderSourceHash).finish();
     return folder / (key.hex() + ".kernel");
   }
 

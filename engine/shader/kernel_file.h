@@ -12,7 +12,7 @@
 
 namespace afterglow {
 
-/// Raise when the bytes, the meaning of offsets or the way of compiling change.
+/// Raise when the bytes change. What compiles is in the name of the file (KernelCompiler).
 inline constexpr std::uint32_t kKernelFileVersion = 10;
 
 struct KernelFile {

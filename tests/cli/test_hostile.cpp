@@ -124,6 +124,10 @@ TEST_F(Hostile, ASandboxShowsTheProgramItsPicturesAlone) {
   ASSERT_EQ(kept.exit_code, kDone) << kept.err;
   for (const char* name : {"a.0001.exr", "a.0002.exr"})
     EXPECT_EQ(read(std::string("free/") + name), read(std::string("kept/") + name)) << name;
+  // What a picture replaces keeps who may read it.
+  fs::permissions(path("kept/a.0001.exr"), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(run({"run", "looks/look.lua", "in/a.####.exr", "-o", "kept/", "--sandbox"}, confined).exit_code, kDone);
+  EXPECT_EQ(fs::status(path("kept/a.0001.exr")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   // A frame that leads out of its folder.
   fs::remove(path("in/a.0002.exr"));
   fs::create_symlink(path("elsewhere/b.exr"), path("in/a.0002.exr"));

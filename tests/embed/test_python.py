@@ -94,6 +94,52 @@ def test_views_need_no_copy_of_the_caller(stack):
     np.testing.assert_array_equal(stack.run(source.astype(np.float64)), wanted)
 
 
+def test_views_of_one_sample_at_many_places(folder, device, stack):
+    def same(view):
+        np.testing.assert_array_equal(stack.run(view), stack.run(view.copy()))
+
+    row = picture(height=1, width=512)
+    same(np.broadcast_to(row, (512, 512, 4)))
+    same(np.broadcast_to(row, (512, 512, 4))[::-1])
+    same(np.broadcast_to(picture(height=64, width=1), (64, 64, 4)))
+    same(np.broadcast_to(np.float32(0.25), (64, 64, 3)))
+    numbers = np.arange(64, dtype=np.float32) / 64
+    overlapping = np.lib.stride_tricks.as_strided
+    same(overlapping(numbers, (8, 4, 3), (12, 12, 4)))  # a row is a pixel further than the last
+    same(overlapping(numbers[60:], (8, 4, 1), (-4, 4, 4)).repeat(3, axis=2))
+    same(overlapping(numbers[24:], (3, 4, 3), (-12, 12, 4)))
+    (folder / "look.lua").write_text(look("fx.depth_fog {}"))
+    fog = afterglow.Stack(folder / "look.lua", device=device)
+    source, depth = picture(64, 64), np.linspace(1, 500, 64, dtype=np.float32)[None, :]
+    flat = np.broadcast_to(depth, (64, 64))
+    np.testing.assert_array_equal(fog.run(source, depth=flat), fog.run(source, depth=flat.copy()))
+
+
+def test_results_that_cannot_be_written_in_place(stack):
+    memory = np.zeros((9, 16, 4), np.float32)
+    strides = memory.strides
+    for out in (
+        np.lib.stride_tricks.as_strided(memory, memory.shape, (0, *strides[1:])),
+        np.lib.stride_tricks.as_strided(memory, memory.shape, (16, *strides[1:])),
+        np.lib.stride_tricks.as_strided(memory, memory.shape, (strides[0], 0, strides[2])),
+        memory[:, ::-1],
+    ):
+        with pytest.raises(ValueError, match="no two pixels in one place"):
+            stack.run(picture(), out=out)
+    assert not memory.any()
+
+
+def test_results_over_another_part_of_the_source(folder, device):
+    # Halves cannot hold every alpha: it is read from the source once more when the result is written.
+    stack = afterglow.Stack(folder / "look.lua", device=device, precision="fp16")
+    wanted = stack.run(picture(32, 16))
+    memory = np.zeros((40, 16, 4), np.float32)
+    memory[:32] = picture(32, 16)
+    np.testing.assert_array_equal(stack.run(memory[:32], out=memory[3:35]), wanted)
+    memory[:32] = picture(32, 16)
+    np.testing.assert_array_equal(stack.run(memory[:32], out=memory[:32][::-1]), wanted)
+
+
 def test_halves_and_codes(stack):
     half = picture(dtype=np.float16)
     result = stack.run(half)

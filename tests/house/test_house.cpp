@@ -184,6 +184,19 @@ std::string comment_of(const std::string& line) {
 }
 
 /// Headers of the system stand in angle brackets.
+/// Licences are told of all that the program is built from; tools/package.sh puts their texts into the archive.
+TEST(House, PackagesOfTheBuildAreNamed) {
+  const std::string dev = read_file(kProject / "dev").value(), told = read_file(kProject / "THIRD_PARTY.md").value();
+  const std::size_t begin = dev.find("BUILD_PACKAGES=(") + std::string_view("BUILD_PACKAGES=(").size();
+  std::istringstream packages(dev.substr(begin, dev.find(')', begin) - begin));
+  const std::set<std::string> tools{"g++", "cmake", "ninja-build", "ccache", "pkg-config"};
+  int seen = 0;
+  for (std::string package; packages >> package; ++seen)
+    EXPECT_TRUE(tools.contains(package) || told.find("`" + package + "`") != std::string::npos)
+        << "THIRD_PARTY.md: has no package `" << package << "`, which ./dev installs to build";
+  EXPECT_GT(seen, 30);
+}
+
 TEST(House, CommentsNameFilesThatAreThere) {
   std::vector<std::string> files;
   for (const char* folder : {"docs", "engine", "examples", "shaders", "tests"})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "arrays.h"
 
+#include <cstdlib>
 #include <limits>
 
 namespace afterglow::python {
@@ -14,12 +15,16 @@ bool is_known(const py::dtype& type) { return is_native(type) && (is_half(type) 
 
 std::string shape_text(const py::array& array) { return py::str(array.attr("shape")).cast<std::string>(); }
 
-/// Channels lie next to each other, pixels go to the right, and every sample is aligned.
+/// Channels lie next to each other, pixels go to the right without touching, and so do rows, up or down: what the
+/// library reads. Not so are views that show one sample at many places, such as those of numpy.broadcast_to.
 bool is_readable(const py::array& array) {
   const auto channels = array.ndim() == 3 ? array.shape(2) : 1;
   const auto item = array.itemsize();
-  const bool together = array.ndim() == 2 || channels == 1 || array.strides(2) == item;
-  return together && (array.shape(1) == 1 || array.strides(1) >= channels * item);
+  const auto pixel = channels * item, width = array.shape(1);
+  if (channels > 1 && array.strides(2) != item) return false;
+  if (width > 1 && array.strides(1) < pixel) return false;
+  const auto row = pixel + (width > 1 ? array.strides(1) * (width - 1) : 0);
+  return array.shape(0) <= 1 || std::abs(array.strides(0)) >= row;
 }
 
 afterglow_image image_of(py::array& array, const char* name) {
@@ -56,13 +61,28 @@ Picture input(const py::object& given, const char* name, bool may_be_flat) {
   return out;
 }
 
+void keep_apart(std::vector<Picture>& sources, const Picture& result) {
+  const py::module_ numpy = py::module_::import("numpy");
+  for (Picture& source : sources) {
+    const bool same = &source == sources.data() && source.image.data == result.image.data &&
+                      source.image.samples == result.image.samples &&
+                      source.image.row_stride == result.image.row_stride &&
+                      source.image.pixel_stride == result.image.pixel_stride;
+    if (same || !numpy.attr("may_share_memory")(source.array, result.array).cast<bool>()) continue;
+    source.array = source.array.attr("copy")();
+    source.image = image_of(source.array, "source");
+  }
+}
+
 Picture output(const py::object& given) {
   if (!py::isinstance<py::array>(given)) throw py::value_error("out is no numpy array");
   auto array = py::reinterpret_borrow<py::array>(given);
   if (!array.writeable()) throw py::value_error("out is read-only");
   if (!is_known(array.dtype())) throw py::value_error("out must be of float32, float16 or uint8");
   if (array.ndim() != 3 || !is_readable(array))
-    throw py::value_error("out must be (height, width, channels), with the channels next to each other");
+    throw py::value_error(
+        "out must be (height, width, channels), with channels next to each other, and no two "
+        "pixels in one place");
   Picture out{array, {}};
   out.image = image_of(out.array, "out");
   return out;

@@ -4,6 +4,8 @@
 
 #include <pybind11/numpy.h>
 
+#include <vector>
+
 #include "afterglow.hpp"
 
 namespace afterglow::python {
@@ -20,8 +22,13 @@ struct Picture {
 /// float32, and layouts that the library cannot read are copied. Throws py::value_error.
 Picture input(const py::object& given, const char* name, bool may_be_flat);
 
-/// `given` to be written in place: float32, float16 or uint8, writeable. Throws py::value_error.
+/// `given` to be written in place: float32, float16 or uint8, writeable, each pixel in a place of its
+/// own. Throws py::value_error.
 Picture output(const py::object& given);
+
+/// Copies of those sources that `result` would overwrite while they are read. The first, the colours, may be the result
+/// itself.
+void keep_apart(std::vector<Picture>& sources, const Picture& result);
 
 /// A new array for the result of `source`: like it, or of the type that is wanted.
 Picture output_like(const Picture& source, const py::object& dtype);

@@ -205,12 +205,12 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   Options options("run", given);
   std::vector<Picture> kept{input(source, "source", false)};
   afterglow_run_info info = afterglow_run_info_default();
-  info.source = kept[0].image;
+  std::vector<afterglow_image*> images{&info.source};
   const auto auxiliary = [&](const char* name, afterglow_image& image) {
     const py::object array = options.take(name);
     if (array.is_none()) return;
     kept.push_back(input(array, name, true));
-    image = kept.back().image;
+    images.push_back(&image);
   };
   auxiliary("depth", info.depth);
   auxiliary("normal", info.normal);
@@ -218,6 +218,8 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   const py::object out = options.take("out"), dtype = options.take("dtype");
   if (!out.is_none() && !dtype.is_none()) throw py::type_error("run() takes out or dtype, not both");
   const Picture result = out.is_none() ? output_like(kept[0], dtype) : output(out);
+  if (!out.is_none()) keep_apart(kept, result);
+  for (std::size_t i = 0; i < kept.size(); ++i) *images[i] = kept[i].image;
   info.result = result.image;
   afterglow_frame frame = afterglow_frame_default();
   frame.number = options.take("frame", frame.number);

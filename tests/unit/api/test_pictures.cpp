@@ -98,6 +98,37 @@ TEST_F(PictureTest, StridesAreKeptAndGapsLeftAlone) {
   EXPECT_EQ(touched, source.size());
 }
 
+TEST_F(PictureTest, StridesShorterThanWhatTheyStepOverAreErrors) {
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size());
+  const std::vector<float> before = result;
+  const StackPtr stack = this->stack();
+  constexpr std::ptrdiff_t kRow = kWidth * 16, kFar = std::numeric_limits<std::ptrdiff_t>::max();
+  const auto refused = [&](std::ptrdiff_t row, std::ptrdiff_t pixel) {
+    std::string texts;
+    for (const bool of_result : {false, true}) {
+      afterglow_run_info info = afterglow_run_info_default();
+      info.source = image(source, kWidth, kHeight);
+      info.result = image(result, kWidth, kHeight);
+      afterglow_image& image = of_result ? info.result : info.source;
+      image.row_stride = row;
+      image.pixel_stride = pixel;
+      const ErrorPtr error(afterglow_stack_run(stack.get(), &info));
+      EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE) << row << " " << pixel;
+      texts += text_of(error.get()) + "\n";
+    }
+    return texts;
+  };
+  for (const std::ptrdiff_t row : {kRow - 1, std::ptrdiff_t{1}, std::ptrdiff_t{-1}, 1 - kRow})
+    EXPECT_EQ(refused(row, 0),
+              "error: image 'source': row_stride is less than a row\n"
+              "error: image 'result': row_stride is less than a row\n");
+  EXPECT_THAT(refused(kRow, 15), HasSubstr("image 'source': pixel_stride is less than 16 bytes"));
+  EXPECT_THAT(refused(kRow, -16), HasSubstr("image 'result': pixel_stride is less than 16 bytes"));
+  for (const auto& [row, pixel] : {std::pair{kFar, std::ptrdiff_t{0}}, {-kFar - 1, 0}, {0, kFar}, {kRow, kFar / 2}})
+    EXPECT_THAT(refused(row, pixel), HasSubstr("a stride is more than 2^46 bytes"));
+  EXPECT_EQ(result, before);
+}
+
 TEST_F(PictureTest, HalvesAreReadAndWritten) {
   std::vector<float> source = pixels(kWidth, kHeight);
   std::vector<std::uint16_t> halves(source.size()), result(source.size()), rounded(source.size());

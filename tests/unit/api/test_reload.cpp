@@ -72,6 +72,24 @@ TEST_F(ReloadTest, FilesAreReadAgainWhenAsked) {
   EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
 }
 
+/// Also one that is too large to be kept as a text (core/file_record.h): what was made of it is.
+TEST_F(ReloadTest, ATableThatWasReadIsNotReadAgain) {
+  constexpr std::size_t kLarge = 65u << 20;
+  write("large.cube", std::string(kLarge, '#') + "\nLUT_1D_SIZE 2\n0 0 0\n0.5 0.5 0.5\n");
+  look("fx.gain { amount = 1 }, fx.lut { file = \"large.cube\" }");
+  const StackPtr stack = this->stack();
+  std::vector<float> source = pixels(4, 4), before(source.size()), result(source.size());
+  afterglow_run_info info = afterglow_run_info_default();
+  info.source = image(source, 4, 4);
+  info.result = image(before, 4, 4);
+  ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  fs::remove(file("large.cube"));
+  info.result = image(result, 4, 4);
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 2)));
+  ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  EXPECT_NE(result, before);
+}
+
 TEST_F(ReloadTest, FilesAreReadWhenAskedAndNeverElse) {
   write("parts.lua", "return { amount = 2 }\n");
   const std::string preset =

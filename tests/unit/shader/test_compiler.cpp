@@ -4,10 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
 #include "core/file.h"
+#include "shader/source_hash.h"
 #include "shader_files.h"
 
 namespace afterglow {
@@ -161,6 +163,23 @@ TEST_F(KernelCache, ComesBackFromDisk) {
   EXPECT_EQ(only_file().extension(), ".kernel");
   EXPECT_EQ(origin(), "disk");
   EXPECT_EQ(files_in(folder_).size(), 1u) << "no temporary files stay behind";
+}
+
+/// A change of any source that has a hand in kernels makes all of them anew.
+TEST_F(KernelCache, TheSourcesOfTheCompilerAreInItsKey) {
+  const fs::path sources = files_.root() / "sources", made = files_.root() / "hash.cpp";
+  const auto hash = [&] {
+    const std::string command = std::string(AFTERGLOW_CMAKE " -D folder='") + sources.string() + "' -D output='" +
+                                made.string() + "' -P " AFTERGLOW_PROJECT_FOLDER "/cmake/source_hash.cmake";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    const std::string text = read_file(made).value();
+    const std::size_t begin = text.find('"', text.find("kShaderSourceHash")) + 1;
+    return text.substr(begin, text.find('"', begin) - begin);
+  };
+  fs::copy(AFTERGLOW_PROJECT_FOLDER "/engine/shader", sources, fs::copy_options::recursive);
+  EXPECT_EQ(hash(), kShaderSourceHash);
+  std::ofstream(sources / "cpu/interleave.cpp", std::ios::app) << "// another way\n";
+  EXPECT_NE(hash(), kShaderSourceHash);
 }
 
 TEST_F(KernelCache, EveryTruncationIsRebuilt) {
