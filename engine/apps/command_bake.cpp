@@ -9,6 +9,7 @@
 #include "apps/bake.h"
 #include "apps/command.h"
 #include "core/text.h"
+#include "core/written_files.h"
 
 namespace afterglow {
 namespace {
@@ -36,6 +37,8 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
     return Error{ErrorKind::script,
                  fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
                  a.preset.file, 0, "effects of colour, like those that `afterglow graph` shows as pixel passes"};
+  const SideFile table{"-o", a.output, FileForm::any};
+  AFTERGLOW_CHECK(check_written({&table, 1}, {}, look.preset->files()));
   SessionOptions options;
   AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, ExecutionArguments{}.options());

@@ -12,6 +12,7 @@
 #include "bench/calibrate.h"
 #include "core/paths.h"
 #include "core/table.h"
+#include "core/written_files.h"
 
 namespace afterglow {
 namespace {
@@ -50,6 +51,8 @@ Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
   }
   AFTERGLOW_TRY(request.size, parse_size(a.size));
   request.base.cache_folder = cache_folder();
+  const SideFile table{"-o", a.out};
+  AFTERGLOW_CHECK(check_written({&table, 1}, {}, {}));
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
   AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
   const auto start = std::chrono::steady_clock::now();

@@ -136,7 +136,7 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
 Command add_effects_command(CLI::App& program) {
   auto* app = program.add_subcommand("effects", "List the effects, or the settings of one");
   auto arguments = std::make_shared<EffectsArguments>();
-  app->add_option("NAME", arguments->name, "Effect whose settings to show, or mask (mask.luma)");
+  app->add_option("EFFECT", arguments->name, "Effect whose settings to show, or mask (mask.luma)");
   app->add_flag("--masks", arguments->masks, "With --json: the masks instead of the effects");
   app->add_flag("--json", arguments->json, "Print JSON");
   app->add_flag("--markdown", arguments->markdown, "Print documents in Markdown");

@@ -12,6 +12,7 @@
 #include "apps/output.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "core/written_files.h"
 #include "farm/slurm.h"
 #include "farm/status.h"
 
@@ -95,6 +96,8 @@ Result<void> run_farm(const FarmArguments& a, Console& console) {
     if (given.size() == 2) return run_chunk(given[0], given[1], console);
     return Error{ErrorKind::usage, "chunk needs a job's folder and a number", "afterglow farm"};
   }
+  const SideFile report{"--report", a.run.report};
+  AFTERGLOW_CHECK(check_written({&report, 1}, {}, {}));
   AFTERGLOW_TRY(farm::Job job, farm::find_job(given.empty() ? "." : given.front()));
   if (word == "join") return run_join(job, console);
   if (word == "report") return report_on(job, a);

@@ -12,6 +12,7 @@
 #include "apps/traffic_view.h"
 #include "batch/crop.h"
 #include "core/json_text.h"
+#include "core/written_files.h"
 
 namespace afterglow {
 namespace {
@@ -52,6 +53,16 @@ Result<std::string> traffic_of_look(const GraphArguments& arguments, const std::
   return traffic_text(look.build.graph, look.preset->name(), options);
 }
 
+/// Whether -o may be written: it is none of the look's files, and no file of another kind lies there.
+Result<void> check_output_of(const GraphArguments& arguments, const std::string& format, const Look& look) {
+  const FileForm form = format == "json"  ? FileForm::json
+                        : format == "dot" ? FileForm::dot
+                        : format == "svg" ? FileForm::svg
+                                          : FileForm::any;
+  const SideFile side{"-o", arguments.output, form};
+  return check_written({&side, 1}, {}, look.preset->files());
+}
+
 Result<void> write_text(const GraphArguments& arguments, const std::string& text) {
   if (!arguments.output.empty()) return output_file(arguments.output, text);
   output("{}", text);
@@ -67,6 +78,7 @@ Result<void> run_graph(const GraphArguments& arguments, Console& console) {
   if (arguments.bandwidth && !arguments.traffic)
     return Error{ErrorKind::usage, "--bandwidth belongs to --traffic", "afterglow graph"};
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
+  AFTERGLOW_CHECK(check_output_of(arguments, format, look));
   if (arguments.traffic) {
     AFTERGLOW_TRY(const std::string told, traffic_of_look(arguments, format, look));
     return write_text(arguments, told);

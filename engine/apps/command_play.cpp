@@ -2,6 +2,9 @@
 // `afterglow play`: footage through a preset that is being edited.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -14,6 +17,7 @@
 #include "apps/play_window.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "core/written_files.h"
 #include "image/writer.h"
 
 namespace afterglow {
@@ -24,6 +28,32 @@ Result<void> write_report(const PlayArguments& a, const std::string& text, bool&
   if (a.report.empty()) return {};
   reported = true;
   return output_file(a.report, text);
+}
+
+/// What is written besides must be nothing that is played. `look`: files of the presets.
+Result<void> check_written_files(const PlayArguments& a, const Footage& footage,
+                                 std::vector<std::filesystem::path> look) {
+  const std::array sides{SideFile{"--screenshot", a.screenshot, FileForm::any}, SideFile{"--report", a.report}};
+  for (int picture = 0; picture < footage.pictures(); ++picture)
+    if (picture == 0 || !footage.movie(picture) || footage.file(picture) != footage.file(picture - 1))
+      std::ranges::move(footage.files(picture), std::back_inserter(look));
+  return check_written(sides, {}, look);
+}
+
+/// Of presets that may still be broken: looks at the pictures anew, and only when something is to be written.
+Result<void> check_written_files(const PlayArguments& a, const PlayerOptions& options) {
+  if (a.report.empty() && a.screenshot.empty()) return {};
+  Diagnostics quiet;  // they are told of when they are played
+  AFTERGLOW_TRY(const auto footage, Footage::open(options.footage, quiet));
+  return check_written_files(a, *footage, {options.preset, options.other_preset});
+}
+
+/// By now the preset has said what it reads.
+Result<void> write_screenshot(const PlayArguments& a, Player& player, Console& console) {
+  AFTERGLOW_TRY(const Picture picture, player.screenshot());
+  if (Stack* const stack = player.live().stack())
+    AFTERGLOW_CHECK(check_written_files(a, player.footage(), stack->preset().files()));
+  return write_picture(picture, a.screenshot, {}, console.diagnostics());
 }
 
 Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console,
@@ -52,8 +82,7 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
     done = Error{ErrorKind::device, "Vulkan validation: " + device->validation_messages().front()};
   if (!done) report.error = done.error();
   if (done && !a.screenshot.empty()) {
-    auto picture = player->screenshot();
-    done = picture ? write_picture(*picture, a.screenshot, {}, console.diagnostics()) : Result<void>(picture.error());
+    done = write_screenshot(a, *player, console);
   }
   if (a.stats) output("{}", play_report_text(report, *player));
   auto written = write_report(a, play_report_json(report, *player), reported);
@@ -111,6 +140,7 @@ Result<void> take_settings(CLI::App& app, const PlayArguments& a) {
 Result<void> play_command(CLI::App& app, const PlayArguments& a, Console& console) {
   AFTERGLOW_CHECK(take_settings(app, a));
   AFTERGLOW_TRY(const PlayerOptions options, a.player());
+  AFTERGLOW_CHECK(check_written_files(a, options));
   bool reported = false;
   auto done =
       a.headless ? play_without_window(a, options, console, reported) : play_with_window(a, options, console, reported);

@@ -24,7 +24,7 @@ Result<void> run_run(const RunArguments& a, Console& console) {
   RunReport report;
   auto done = run_batch(request, run_events(console), report);
   if (!a.stats.empty() && report.session) output("{}", report_text(report, a.stats == "passes"));
-  if (!a.report.empty()) {
+  if (!a.report.empty() && report.replaces_nothing) {
     auto written = output_file(a.report, report_json(report));
     if (done && !written) return written;
   }

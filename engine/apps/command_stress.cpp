@@ -10,6 +10,7 @@
 #include "apps/output.h"
 #include "apps/stress_arguments.h"
 #include "core/table.h"
+#include "core/written_files.h"
 
 namespace afterglow {
 namespace {
@@ -68,6 +69,10 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
   AFTERGLOW_TRY(const auto first, a.request(devices.front()));
   if (!a.repeat.empty()) return repeat(a, first, console);
   if (!a.digests_of.empty()) return print_digests(a, first, console);
+  for (const auto& device : devices) {
+    const SideFile report{"--report", a.report.empty() ? "" : a.report_file(device)};
+    AFTERGLOW_CHECK(check_written({&report, 1}, {}, {}));
+  }
   constexpr unsigned kSecondsToEndATrial = 30;  // a case that fails is being made small: hours of work end in a report
   allow_to_end(kSecondsToEndATrial);
   std::uint64_t failures = 0;

@@ -2,7 +2,10 @@
 #include "apps/command_words.h"
 
 #include <algorithm>
+#include <iterator>
 
+#include "apps/farm_arguments.h"
+#include "apps/usual_words.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -10,8 +13,8 @@ namespace {
 
 /// CLI11 tells "FORMAT:{dot,svg,json}" of an option with these values, "FILE" of others.
 void read_type(const std::string& type, OptionWords& out) {
-  const std::size_t colon = type.find(':'), open = type.find('{'), close = type.find('}');
-  out.value = type.substr(0, std::min(colon, open));
+  const std::size_t open = type.find('{'), close = type.find('}');
+  out.value = type.substr(0, type.find_first_of(":{["));  // "FILE[:CHANNEL]"
   if (open != std::string::npos && close != std::string::npos && open < close)
     out.choices = split(type.substr(open + 1, close - open - 1), ',');
 }
@@ -28,7 +31,16 @@ OptionWords words_of_option(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return out;
   read_type(option.get_type_name(), out);
   if (out.value.empty()) out.value = "VALUE";
+  if (out.choices.empty()) out.usual = usual_words(out.positional ? out.names.front() : out.value);
   return out;
+}
+
+/// What an option of a command takes from the commands themselves.
+void add_words_of_commands(const std::string& command, const std::vector<CommandWords>& all, OptionWords& option) {
+  if (option.names.front() == "COMMAND")
+    for (const CommandWords& other : all) option.usual.push_back(other.name);
+  if (command == "farm" && option.names.front() == "PRESET")
+    std::ranges::copy(farm_words(), std::back_inserter(option.usual));
 }
 
 }  // namespace
@@ -41,6 +53,8 @@ std::vector<CommandWords> command_words(const CLI::App& program) {
     std::ranges::stable_sort(command.options, std::ranges::greater{}, &OptionWords::positional);
     out.push_back(std::move(command));
   }
+  for (CommandWords& command : out)
+    for (OptionWords& option : command.options) add_words_of_commands(command.name, out, option);
   return out;
 }
 

@@ -14,6 +14,7 @@ struct OptionWords {
   std::string help, group;
   std::string value;                 ///< "FILE"; empty: a flag
   std::vector<std::string> choices;  ///< all values that it takes, when they are few
+  std::vector<std::string> usual;    ///< some of those that it takes, else
   bool positional = false, required = false;
 };
 

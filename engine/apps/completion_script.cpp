@@ -23,6 +23,18 @@ std::string options_of(const CommandWords& command) {
   return join(names, " ");
 }
 
+/// What a shell offers for a value; empty: files.
+const std::vector<std::string>& offered(const OptionWords& option) {
+  return option.choices.empty() ? option.usual : option.choices;
+}
+
+/// The first word behind a command's name, where words are offered for it.
+const OptionWords* first_word(const CommandWords& command) {
+  if (command.options.empty()) return nullptr;
+  const OptionWords& first = command.options.front();  // positionals are
+  return first.positional && !offered(first).empty() ? &first : nullptr;
+}
+
 bool is_folder(const OptionWords& option) { return option.value.starts_with("FOLDER"); }
 
 /// `text` with `before` in front of each of `special`, and its lines made one.
@@ -45,15 +57,17 @@ std::string quoted_word(const std::string& text) {
 }  // namespace
 
 std::string bash_completion(const std::vector<CommandWords>& commands) {
-  std::string values, options;
+  std::string values, firsts, options;
   for (const auto& command : commands) {
+    if (const OptionWords* first = first_word(command))
+      firsts += fmt::format("      {}) words='{}' ;;\n", command.name, join(offered(*first), " "));
     options += fmt::format("    {}) words='{}' ;;\n", command.name, options_of(command));
     for (const auto& option : command.options) {
-      if (option.positional || (option.choices.empty() && !is_folder(option))) continue;
+      if (option.positional || (offered(option).empty() && !is_folder(option))) continue;
       std::vector<std::string> keys;
       for (const auto& name : option.names) keys.push_back(command.name + "/" + name);
       values += fmt::format("    {}) COMPREPLY=($(compgen {} -- \"$word\")); return ;;\n", join(keys, " | "),
-                            option.choices.empty() ? "-d" : "-W '" + join(option.choices, " ") + "'");
+                            offered(option).empty() ? "-d" : "-W '" + join(offered(option), " ") + "'");
     }
   }
   return kMade + fmt::format(R"(_afterglow() {{
@@ -65,21 +79,29 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
   fi
   case $command/$before in
 {}  esac
-  [[ $word == -* ]] || return 0
+  if [[ $word != -* ]]; then
+    ((COMP_CWORD == 2)) || return 0
+    case $command in
+{}      *) return 0 ;;
+    esac
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; compgen -f -- "$word")
+    return
+  fi
   case $command in
 {}  esac
   COMPREPLY=($(compgen -W "$words" -- "$word"))
 }}
 complete -o default -F _afterglow afterglow
 )",
-                             names_of(commands), values, options);
+                             names_of(commands), values, firsts, options);
 }
 
 std::string zsh_completion(const std::vector<CommandWords>& commands) {
   const auto spec = [](const OptionWords& option) {
-    const std::string action = !option.choices.empty() ? "(" + join(option.choices, " ") + ")"
-                               : is_folder(option)     ? "_directories"
-                                                       : "_files";
+    const std::string action = !offered(option).empty() ? "(" + join(offered(option), " ") + ")"
+                               : is_folder(option)      ? "_directories"
+                                                        : "_files";
     const std::string value = escaped(option.value, ":", "\\");
     if (option.positional)
       return quoted_word(fmt::format("{}:{}:{}", option.required ? "" : ":", option.names.front(), action));
@@ -96,6 +118,9 @@ std::string zsh_completion(const std::vector<CommandWords>& commands) {
     cases += fmt::format("    {})\n      _arguments -s", command.name);
     for (const auto& option : command.options)
       if (!option.positional) cases += " \\\n        " + spec(option);
+    if (const OptionWords* first = first_word(command))
+      cases += fmt::format(" \\\n        '1:{}:{{compadd -- {}; _files}}'", first->names.front(),
+                           join(offered(*first), " "));
     cases += " \\\n        '*:file:_files' ;;\n";
   }
   return fmt::format("#compdef afterglow\n{}", kMade) + fmt::format(R"(_afterglow() {{
@@ -123,13 +148,19 @@ std::string fish_completion(const std::vector<CommandWords>& commands) {
     out += fmt::format("complete -c afterglow -n __fish_use_subcommand -f -a {} -d {}\n", command.name,
                        text(command.help));
   for (const auto& command : commands)
+    if (const OptionWords* first = first_word(command))
+      out += fmt::format(
+          "complete -c afterglow -n '__fish_seen_subcommand_from {}; and test (count (commandline -opc)) -eq 2' -a "
+          "{}\n",
+          command.name, text(join(offered(*first), " ")));
+  for (const auto& command : commands)
     for (const auto& option : command.options) {
       if (option.positional) continue;
       out += fmt::format("complete -c afterglow -n '__fish_seen_subcommand_from {}'", command.name);
       for (const auto& name : option.names)
         out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      if (!option.choices.empty())
-        out += " -x -a " + text(join(option.choices, " "));
+      if (!offered(option).empty())
+        out += " -x -a " + text(join(offered(option), " "));
       else if (is_folder(option))
         out += " -x -a '(__fish_complete_directories)'";
       else if (!option.value.empty())

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -26,6 +27,18 @@ bool terminal_has_colors() {
 void put(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
+}
+
+/// As much of a line as stderr's terminal has room for, so that the line stays one.
+std::string_view fitting(std::string_view line) {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return line;
+  std::size_t room = size.ws_col - 1u;  // in its last column some terminals begin the next line
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if ((static_cast<unsigned char>(line[i]) & 0xC0) == 0x80) continue;
+    if (room-- == 0) return line.substr(0, i);
+  }
+  return line;
 }
 
 std::string clock_text(double seconds) {
@@ -89,8 +102,10 @@ void Console::progress(std::size_t done, std::size_t total, const std::string& l
   constexpr std::size_t kWidth = 24;
   const std::size_t filled = done * kWidth / total;
   const double left = done > 0 ? seconds / static_cast<double>(done) * static_cast<double>(total - done) : 0;
-  put(fmt::format("{}[{}{}] {}/{}  {}{}", kEraseLine, std::string(filled, '='), std::string(kWidth - filled, ' '), done,
-                  total, label, done > 0 ? fmt::format("  {} left", clock_text(left)) : ""));
+  const std::string line =
+      fmt::format("[{}{}] {}/{}  {}{}", std::string(filled, '='), std::string(kWidth - filled, ' '), done, total, label,
+                  done > 0 ? fmt::format("  {} left", clock_text(left)) : "");
+  put(fmt::format("{}{}", kEraseLine, fitting(line)));
   progress_shown_ = true;
 }
 

@@ -103,6 +103,8 @@ void FarmArguments::add(CLI::App& command) {
       ->group("Messages");
 }
 
+std::vector<std::string> farm_words() { return {kWords.begin(), kWords.end()}; }
+
 std::string FarmArguments::word() const { return is_one_of(run.preset.file, kWords) ? run.preset.file : std::string(); }
 
 Result<void> FarmArguments::check_word() const {
@@ -113,7 +115,7 @@ Result<void> FarmArguments::check_word() const {
       return Error{ErrorKind::usage, fmt::format("'{}' is for one job", asked), "afterglow farm"};
     return {};
   }
-  const std::vector<std::string> words(kWords.begin(), kWords.end());
+  const std::vector<std::string> words = farm_words();
   const std::string nearest = nearest_name(run.preset.file, words);
   if (run.files.output.empty() && !nearest.empty())
     return Error{ErrorKind::usage, fmt::format("'{}' is no word of it", run.preset.file),

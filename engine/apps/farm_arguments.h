@@ -29,6 +29,9 @@ struct FarmArguments {
   Result<void> check_word() const;
 };
 
+/// What may stand in the place of a look: status, report, …
+std::vector<std::string> farm_words();
+
 /// The request that words of `run` stand for. Errors: usage, script.
 Result<BatchRequest> request_of_words(std::vector<std::string> words);
 

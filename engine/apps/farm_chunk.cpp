@@ -12,6 +12,7 @@
 #include "apps/run_events.h"
 #include "core/file.h"
 #include "core/parse_number.h"
+#include "core/temporary.h"
 #include "farm/attempt.h"
 
 namespace afterglow {
@@ -54,12 +55,7 @@ Result<void> make_frames(const farm::Job& job, std::size_t number, const RunEven
   return run_batch(request, events, report);
 }
 
-Result<void> join_pieces(const farm::Job& job, const RunEvents& events) {
-  std::error_code ec;
-  if (!std::filesystem::exists(job.pieces(), ec) && is_file(job.video)) {
-    events.diagnostics.note(fmt::format("{} was joined before", job.video));
-    return {};
-  }
+Result<void> join_all(const farm::Job& job, const RunEvents& events) {
   AFTERGLOW_TRY(BatchRequest request, request_of(job));
   std::vector<VideoPart> parts;
   for (std::size_t i = 0; i < job.chunks.size(); ++i) {
@@ -77,8 +73,25 @@ Result<void> join_pieces(const farm::Job& job, const RunEvents& events) {
   }
   if (job.holds_missing) hold_missing(frames);
   AFTERGLOW_CHECK(join_parts(request, frames, parts, events));
+  // All at once: who joins at the same time misses one only when the video is there.
+  const Temporary done(job.pieces());
   std::error_code ignored;
-  std::filesystem::remove_all(job.pieces(), ignored);
+  std::filesystem::rename(job.pieces(), done.path(), ignored);
+  return {};
+}
+
+/// The last thing that a join does is to take the pieces away.
+bool was_joined(const farm::Job& job) {
+  std::error_code ec;
+  return !std::filesystem::exists(job.pieces(), ec) && is_file(job.video);
+}
+
+Result<void> join_pieces(const farm::Job& job, const RunEvents& events) {
+  if (!was_joined(job)) {
+    auto done = join_all(job, events);
+    if (done || !was_joined(job)) return done;
+  }
+  events.diagnostics.note(fmt::format("{} was joined before", job.video));
   return {};
 }
 

@@ -97,6 +97,10 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   AFTERGLOW_CHECK(check_parts(request, out.frames, console.diagnostics()));
   tell_not_there_yet(out.frames, console.diagnostics());
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
+  request.beside.push_back({"--jobs", arguments.jobs});
+  FilesOfFrames files;
+  for (const FrameJob& frame : out.frames) files.add(frame);
+  AFTERGLOW_CHECK(check_written(request, std::move(files), look.files));
   farm::Job& job = out.job;
   std::error_code ec;
   job.program = own_file().string();

@@ -28,7 +28,10 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<unsigned>::i
 }
 
 void on_signal(int signal) {
-  if (g_interrupted.exchange(true)) end_at_once(signal);
+  if (g_interrupted.exchange(true)) {
+    if (signal == SIGXCPU) return;  // comes again each second
+    end_at_once(signal);
+  }
   give_up_waiting();
   alarm(g_grace);
 }
@@ -41,18 +44,17 @@ void handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-bool is_ignored(int signal) {
+/// What nohup and shells have said is to be ignored (`trap '' INT`) stays so.
+void handle_unless_ignored(int signal) {
   struct sigaction now {};
-  return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+  if (sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_IGN) handle(signal, on_signal);
 }
 
 }  // namespace
 
 void install_interrupt_handler() {
   handle(SIGALRM, end_at_once);
-  handle(SIGINT, on_signal);
-  handle(SIGTERM, on_signal);
-  if (!is_ignored(SIGHUP)) handle(SIGHUP, on_signal);  // nohup has said that it is to be ignored
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) handle_unless_ignored(signal);
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is a write that fails, with a message
   std::signal(SIGPIPE, SIG_IGN);  // so is one into a pipe that nobody reads
 }

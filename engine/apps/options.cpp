@@ -9,10 +9,12 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "core/memory_limit.h"
 #include "core/parse_number.h"
 #include "core/paths.h"
 #include "core/text.h"
 #include "exec/calibration.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 
@@ -32,6 +34,16 @@ CLI::Validator above_zero() {
     return number && *number > 0 ? std::string() : fmt::format("{} is no number above 0", text);
   };
   return {fault, "POSITIVE"};
+}
+
+CLI::Validator frame_rates() {
+  const auto fault = [](const std::string& text) {
+    const auto number = parse_number<double>(text);
+    const bool good = number && *number >= kSlowestRate && *number <= kFastestRate;
+    return good ? std::string()
+                : fmt::format("{} is no number of frames a second, {} to {}", text, kSlowestRate, kFastestRate);
+  };
+  return {fault, "FPS"};
 }
 
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
@@ -150,7 +162,11 @@ void ExecutionArguments::add(CLI::App& command) {
   add_calibration(command);
   command.add_flag("--reference", reference, "The slow truth: every pass on its own, full floats, computed weights")
       ->group("Device");
-  command.add_option("--max-memory", max_memory, "Refuse pictures that need more: 512M, 6G (default 6G)")
+  command
+      .add_option(
+          "--max-memory", max_memory,
+          "Refuse pictures that need more: 512M, 6G (default: 6G, or what the machine or its control group has, if "
+          "that is less)")
       ->type_name("SIZE")
       ->group("Device");
 }
@@ -184,7 +200,11 @@ Result<StackOptions> ExecutionArguments::options() const {
   options.max_error = max_error;
   options.reference = reference;
   options.calibration = calibration;
-  AFTERGLOW_TRY(options.max_memory, parse_memory(max_memory));
+  if (max_memory.empty()) {
+    options.max_memory = memory_limit_of_process().bytes;
+  } else {
+    AFTERGLOW_TRY(options.max_memory, parse_memory(max_memory));
+  }
   options.cache_folder = cache_folder();
   return options;
 }
@@ -261,7 +281,7 @@ void AssumedPicture::add(CLI::App& command) {
       ->type_name("N")
       ->group("Picture");
   command.add_option("--fps", fps, "Frames a second, for animated presets (default 24)")
-      ->check(above_zero())
+      ->check(frame_rates())
       ->type_name("N")
       ->group("Picture");
   add_repeatable(command, "--without", without,

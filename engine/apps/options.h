@@ -27,6 +27,9 @@ struct MessageArguments {
 /// Numbers above 0. (CLI11's own tells of them as "0.000000 to 1797…", 308 digits.)
 CLI::Validator above_zero();
 
+/// Rates that videos can have (kSlowestRate).
+CLI::Validator frame_rates();
+
 /// An option that may be given several times, with one value each.
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
                             const std::string& help, const char* type);
@@ -74,7 +77,7 @@ struct ExecutionArguments {
   std::string precision = "auto";
   std::optional<double> max_error;
   bool reference = false;
-  std::string max_memory = "6G";
+  std::string max_memory;  ///< empty: memory_limit_of_process
   std::string calibration;
   void add(CLI::App& command);
   void add_max_error(CLI::App& command);    ///< --max-error alone

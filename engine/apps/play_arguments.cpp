@@ -46,7 +46,7 @@ void PlayArguments::add_input(CLI::App& app) {
 void PlayArguments::add_playing(CLI::App& app) {
   const std::string group = "Playing", alone = "Without a window";
   app.add_option("--fps", fps, "Frames a second (default: the video's, else 24)")
-      ->check(above_zero())
+      ->check(frame_rates())
       ->type_name("N")
       ->group(group);
   app.add_option("--speed", speed, "0.1 to 8, below 0 backwards (default 1)")->type_name("X")->group(group);

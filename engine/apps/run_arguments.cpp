@@ -29,7 +29,7 @@ void add_files(CLI::App& app, RunArguments& a) {
   a.layers.add(app);
   app.add_option("--input-space", a.input_space,
                  "Colour space that pictures are stored in, whatever they say: " + space_list())
-      ->type_name("NAME")
+      ->type_name("SPACE")
       ->group(input);
   app.add_option(
          "--size", a.size,
@@ -62,7 +62,7 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option(
          "--fps", a.fps,
          "Frames a second, for animated presets and videos (default: for videos what the first picture says, else 24)")
-      ->check(above_zero())
+      ->check(frame_rates())
       ->type_name("N")
       ->group(sequence);
   app.add_option(
@@ -96,12 +96,12 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--output-space", a.output_space,
                  "Colour space of integer samples: a name of --input-space (default: cineon for DPX and Cineon, srgb "
                  "for other pictures)")
-      ->type_name("NAME")
+      ->type_name("SPACE")
       ->group(output);
   app.add_option("--compression", a.compression,
                  "EXR: none, rle, zip (default), zips, piz, pxr24, b44, b44a, dwaa, dwab; TIFF: none, lzw, zip, "
                  "packbits; WebP: lossless, lossy:QUALITY; Targa: none, rle")
-      ->type_name("NAME[:LEVEL]")
+      ->type_name("COMPRESSION[:LEVEL]")
       ->group(output);
   app.add_option("--png-level", a.png_level,
                  "PNG effort, 0 to 9 (default 1: five times faster than 6, files up to a tenth larger)")
@@ -123,7 +123,7 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--codec", a.codec,
                  "mp4: h264 (default), h265, av1, vp9; mov: prores (default; prores4444 for alpha), prores4444, dnxhr, "
                  "h264, h265; mkv: h264 (default), h265, ffv1, prores, prores4444, vp9, av1; webm: vp9 (default), av1")
-      ->type_name("NAME")
+      ->type_name("CODEC")
       ->group(video);
   app.add_option("--crf", a.crf,
                  "Quality, 0 is best (default: h264 18, h265 20, vp9 24, av1 26); prores, dnxhr and ffv1 take none")
@@ -284,7 +284,8 @@ Result<BatchRequest> RunArguments::request() const {
                    .resume = resume,
                    .pixel_options = pixel_options(*this),
                    .lock = lock,
-                   .locked = locked};
+                   .locked = locked,
+                   .beside = {{"--lock", lock}, {"--report", report}}};
   if (watch && files.frames.empty())
     return Error{ErrorKind::usage, "--watch needs --frames: it ends when they are done"};
   if (report == "-" && files.output == "-")

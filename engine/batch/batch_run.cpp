@@ -12,6 +12,7 @@
 #include "batch/watch_run.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "core/temporary.h"
 #include "core/text.h"
 #include "graph/history.h"
 #include "image/video_writer.h"
@@ -132,6 +133,21 @@ Result<void> check_outputs(const BatchRun& run) {
   return check_pictures(outputs, run.request.files, run.request.loop.write);
 }
 
+/// So are those in whose place something lies that is not to be replaced: by now the look has said what it reads. What
+/// `resume` keeps may be read-only.
+Result<void> check_places(const BatchRun& run) {
+  FilesOfFrames files;
+  for (const auto& frame : run.report.frames) {
+    if (frame.state == FrameRecord::State::waiting && !run.sink->is_one())
+      AFTERGLOW_CHECK(check_replaceable(frame.job.output));
+    files.add(frame.job);
+  }
+  files.read.clear();
+  auto good = check_written(run.request, std::move(files), run.session->preset().files());
+  run.report.replaces_nothing = static_cast<bool>(good);
+  return good;
+}
+
 /// The next frame of standard input.
 Result<FrameRecord*> next_record(BatchRun& run) {
   AFTERGLOW_TRY(std::optional<FrameJob> job, run.list.more());
@@ -169,6 +185,7 @@ Result<void> run_frames(BatchRun& run) {
   if (earlier) loop.follow_histories();
   if (earlier && takes_notes(run)) note_earlier_files(frames, asked.files, *earlier);
   AFTERGLOW_CHECK(prepare_notes(run));
+  AFTERGLOW_CHECK(check_places(run));
   if (run.notes) loop.note_frames(*run.notes);
   const auto run_waiting = [&]() -> Result<void> {
     Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
@@ -191,6 +208,23 @@ Result<void> run_frames(BatchRun& run) {
 }
 
 }  // namespace
+
+void FilesOfFrames::add(const FrameJob& frame) {
+  if (outputs.empty() || outputs.back() != frame.output) outputs.push_back(frame.output);
+  std::vector<std::filesystem::path> sources = frame.sources();
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (i >= last_.size() || last_[i] != sources[i]) read.push_back(sources[i]);
+  last_ = std::move(sources);
+}
+
+Result<void> check_written(const BatchRequest& request, FilesOfFrames frames,
+                           const std::vector<std::filesystem::path>& look) {
+  auto& read = frames.read;
+  read.insert(read.end(), look.begin(), look.end());
+  read.insert(read.end(),
+              {request.preset, request.locked, request.session.stack.calibration, request.loop.write.video.audio});
+  return check_written(request.beside, frames.outputs, read);
+}
 
 bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {
   FrameLoopOptions& loop = request.loop;
@@ -215,8 +249,14 @@ Result<void> run_batch(const BatchRequest& asked, const RunEvents& events, RunRe
                             number_text(request.loop.fps)));
   if (run.list.more && request.resume)
     return Error{ErrorKind::usage, "--resume needs inputs that are files, not standard input"};
-  for (const auto& job : run.list.jobs) report.frames.push_back({.job = job});
+  FilesOfFrames files;
+  for (const auto& job : run.list.jobs) {
+    files.add(job);
+    report.frames.push_back({.job = job});
+  }
   run.list.jobs.clear();
+  AFTERGLOW_CHECK(check_written(request, std::move(files), {}));
+  report.replaces_nothing = true;
   auto done = run_frames(run);
   if (done && !request.lock.empty()) done = write_file_atomically(request.lock, lock_text(*run.lock));
   if (run.session && run.session->ready()) report.session = run.session->report();

@@ -14,6 +14,7 @@
 #include "batch/run_events.h"
 #include "batch/run_report.h"
 #include "core/result.h"
+#include "core/written_files.h"
 #include "session/session.h"
 
 namespace afterglow {
@@ -30,7 +31,23 @@ struct BatchRequest {
   PixelOptions pixel_options;    ///< everything besides the preset that changes pixels, for locks and `resume`
   std::filesystem::path lock;    ///< where to write what the run was made with; empty: nowhere
   std::filesystem::path locked;  ///< a lock that the run must agree with; empty: none
+  std::vector<SideFile> beside;  ///< what is written besides, `lock` too: must be none of the pictures and the look
 };
+
+/// What frames write and read.
+struct FilesOfFrames {
+  std::vector<std::filesystem::path> outputs, read;
+  /// Files that it shares with the frame before are named once: a video has many frames.
+  void add(const FrameJob& frame);
+
+ private:
+  std::vector<std::filesystem::path> last_;
+};
+
+/// Refuses what the request would write over its own files: those of its frames, those that `look` is made of and those
+/// that options name. Errors: usage, io (a file besides that may not be written).
+Result<void> check_written(const BatchRequest& request, FilesOfFrames frames,
+                           const std::vector<std::filesystem::path>& look);
 
 /// Sets the rate of a video (FrameLoopOptions::takes_fps) to that which its first picture says. Whether it says one.
 bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames);

@@ -117,7 +117,8 @@ Result<void> FrameLoop::close(Result<void> result) {
   if (!result) {
     if (result.error().kind == ErrorKind::interrupted && total_ > 1) {
       Error error = result.error();
-      error.message = fmt::format("interrupted after {} of {} frames; --resume goes on from there", done_, total_);
+      error.message = fmt::format("interrupted after {} of {} frames{}", done_, total_,
+                                  sink_.is_one() || endless_ ? "" : "; --resume goes on from there");
       return error;
     }
     return result;

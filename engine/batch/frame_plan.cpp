@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "batch/crop.h"
+#include "core/memory_limit.h"
 #include "core/text.h"
 #include "image/metadata.h"
 #include "image/movie.h"
@@ -43,8 +44,8 @@ Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build
   largest_need_ = std::max(largest_need_, need.one_frame());
   if (need.one_frame() > options_.max_memory)
     return Error{ErrorKind::io,
-                 fmt::format("{}x{} pixels need about {} with this preset, above --max-memory {}", context.size.width,
-                             context.size.height, memory_text(need.one_frame()), memory_text(options_.max_memory)),
+                 fmt::format("{}x{} pixels need about {} with this preset, more than the {}", context.size.width,
+                             context.size.height, memory_text(need.one_frame()), allowed_memory(options_.max_memory)),
                  job.input.string()};
   return need;
 }

@@ -31,7 +31,10 @@ class FileSink : public FrameSink {
   Result<void> write(const FrameJob& job, std::size_t, const Picture& picture, const Turn&) override {
     AFTERGLOW_CHECK(make_folder(folder_));
     AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
-    return record_made(job);
+    if (const auto noted = record_made(job); !noted)
+      diagnostics_.warn_once("notes", fmt::format("{}: {}; --resume will make such frames again", noted.error().file,
+                                                  noted.error().message));
+    return {};
   }
   std::uint64_t bytes_of_frame(const FrameJob& job, Size size, bool has_alpha, const FileFacts* facts) const override {
     return write_bytes(job.output, options_, size, has_alpha, facts);

@@ -126,8 +126,11 @@ int remove_leftovers(const FrameRecords& frames) {
 Result<void> record_made(const FrameJob& job) {
   if (job.made_of.empty()) return {};
   const fs::path file = record_file(job.output);
+  const fs::path folder = job.output.has_parent_path() ? job.output.parent_path() : fs::path(".");
   std::error_code ec;
-  fs::create_directory(file.parent_path(), ec);
+  // Whoever may write the outputs may write their notes.
+  if (fs::create_directory(file.parent_path(), ec))
+    fs::permissions(file.parent_path(), fs::status(folder, ec).permissions(), ec);
   return write_file_atomically(file, job.made_of + "output " + stamp_of(job.output) + "\n");
 }
 

@@ -52,6 +52,9 @@ struct RunReport {
   double wall = 0;           ///< from the start of the program to now
   double frames_wall = 0;    ///< from the first frame's beginning until the last was written
   double processors = 0;     ///< milliseconds of processors in that time, of all threads
+  /// What is to be written besides (BatchRequest::beside) takes the place of nothing that is known to be read: only
+  /// then may a report be written there.
+  bool replaces_nothing = false;
   std::uint64_t memory_needed = 0;  ///< estimate that was held against --max-memory, of the largest frame
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "batch/video_times.h"
+#include "core/temporary.h"
 #include "image/metadata.h"
 
 namespace afterglow {
@@ -33,7 +34,8 @@ class VideoSink : public FrameSink {
       return Error{ErrorKind::usage, "--compression is for pictures; a video has --codec and --crf", file_.string()};
     AFTERGLOW_TRY(const VideoPlan plan, plan_video(file_, options_, false, false));
     AFTERGLOW_CHECK(check_video_encoder(plan, file_));
-    return check_place(file_);
+    AFTERGLOW_CHECK(check_place(file_));
+    return check_replaceable(file_);
   }
 
   /// Once the video is open, a frame is packed while those before it are encoded.

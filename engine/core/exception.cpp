@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <new>
+#include <system_error>
 
 #include "core/text.h"
 
@@ -13,10 +14,17 @@ bool is_lack_of_memory(const std::exception& exception) {
   return dynamic_cast<const std::bad_alloc*>(&exception) != nullptr;
 }
 
+/// std::thread and std::async throw it.
+bool is_lack_of_threads(const std::exception& exception) {
+  const auto* error = dynamic_cast<const std::system_error*>(&exception);
+  return error != nullptr && error->code() == std::errc::resource_unavailable_try_again;
+}
+
 }  // namespace
 
 std::string exception_text(const std::exception& exception) {
   if (is_lack_of_memory(exception)) return "out of memory";
+  if (is_lack_of_threads(exception)) return "no more threads can be started (ulimit -u, or pids of the control group)";
   std::string text = exception.what();
   std::ranges::replace(text, '\n', ' ');
   text = trim(text);
@@ -26,7 +34,7 @@ std::string exception_text(const std::exception& exception) {
 
 Error exception_error(const std::exception& exception) {
   const std::string text = exception_text(exception);
-  if (is_lack_of_memory(exception)) return {ErrorKind::io, text};
+  if (is_lack_of_memory(exception) || is_lack_of_threads(exception)) return {ErrorKind::io, text};
   return {ErrorKind::other, "internal error: " + text};
 }
 

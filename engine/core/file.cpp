@@ -45,14 +45,11 @@ std::vector<std::string> names_beside(const fs::path& path) {
   return names;
 }
 
-/// What a file must not be put in the place of.
-bool is_stream(const fs::path& path) {
-  const std::string name = path.string();
-  for (const char* of_processes : {"/dev/std", "/dev/fd/", "/proc/"})
-    if (name.starts_with(of_processes)) return true;
-  std::error_code ec;
-  const auto status = fs::status(path, ec);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+/// Nobody can say whether it is there.
+bool is_unseen(const fs::file_status& status) { return status.type() == fs::file_type::none; }
+
+Error unseen(const fs::path& path, const std::error_code& why) {
+  return {ErrorKind::io, fmt::format("cannot be read: {}", why.message()), path.string()};
 }
 
 Result<void> write_stream(const fs::path& path, std::string_view content) {
@@ -90,6 +87,8 @@ std::vector<std::string> names_in(const fs::path& folder) {
 }
 
 Error missing_file(const fs::path& path) {
+  std::error_code ec;
+  if (is_unseen(fs::status(path, ec))) return unseen(path, ec);
   Error error{ErrorKind::io, "no such file", path.string()};
   if (std::string name = path.filename().string(); name.find('@') != std::string::npos) {
     std::ranges::replace(name, '@', '#');
@@ -117,6 +116,7 @@ template <class Take>
 Result<void> read_pieces(const fs::path& path, Take&& take) {
   std::error_code ec;
   const auto status = fs::status(path, ec);
+  if (is_unseen(status)) return unseen(path, ec);
   if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
   if (fs::is_directory(status)) return Error{ErrorKind::io, "is a folder, not a file", path.string()};
   // Reading a pipe waits for whoever may write it, which may be nobody.

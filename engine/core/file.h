@@ -31,15 +31,15 @@ Result<std::string> read_named_file(const std::filesystem::path& path, std::size
 /// are met of a larger one.
 std::vector<std::string> names_in(const std::filesystem::path& folder);
 
-/// io, "no such file", with the name in its folder that is nearest to its own, when one is near. For a frame of a
-/// sequence (its name holds a number of several digits) none is: it is missing, not misspelt.
+/// io: what keeps it from being seen, or "no such file", with the nearest name in its folder when one is near. For a
+/// frame of a sequence (its name holds a number of several digits) none is: it is missing, not misspelt.
 Error missing_file(const std::filesystem::path& path);
 
 /// Is there a file (links are followed)?
 bool is_file(const std::filesystem::path& path, FileRecord* record = nullptr);
 
-/// Writes to a temporary file beside `path`, then renames. On error nothing is left behind. A device, a pipe and what
-/// /dev/stdout, /dev/stderr, /dev/fd and /proc lead to are written to as they stand. Errors: io.
+/// Writes to a temporary file beside `path`, then renames. On error nothing is left behind. Streams are written to as
+/// they stand. Errors: io (a file that may not be written is not replaced, too).
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace afterglow

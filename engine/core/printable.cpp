@@ -31,11 +31,15 @@ std::string printable(std::string text, bool lines) {
   return text;
 }
 
+std::string_view cut_utf8(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
+  return text.substr(0, bytes);
+}
+
 std::string tidy_message(std::string text, std::size_t limit) {
   if (text.size() > limit) {
-    std::size_t end = limit;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    text.resize(end);
+    text.resize(cut_utf8(text, limit).size());
     text += "…";
   }
   for (char& c : text)

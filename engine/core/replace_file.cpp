@@ -15,8 +15,8 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-// All of it, with the mode, on disk. On failure errno tells.
-bool write_new(const fs::path& path, std::string_view content, mode_t mode) {
+// All of it, with owner and mode of `old`, on disk. On failure errno tells.
+bool write_new(const fs::path& path, std::string_view content, const struct stat& old) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file < 0) return false;
   bool good = true;
@@ -25,7 +25,10 @@ bool write_new(const fs::path& path, std::string_view content, mode_t mode) {
     if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
     good = written > 0 || errno == EINTR;
   }
-  good = good && fchmod(file, mode) == 0 && fsync(file) == 0;
+  // Root leaves the file its owner's; others cannot give files away. Before the mode: it takes bits of it.
+  const bool given = good && fchown(file, old.st_uid, old.st_gid) == 0;
+  static_cast<void>(given);
+  good = good && fchmod(file, old.st_mode & 07777) == 0 && fsync(file) == 0;
   const int reason = errno;
   close(file);
   errno = reason;
@@ -40,10 +43,9 @@ Result<void> replace_file_atomically(const fs::path& path, std::string_view cont
   };
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return failed(errno);
-  // A file that may not be written is not replaced either, though its folder would allow it.
-  if (access(path.c_str(), W_OK) != 0) return failed(errno);
+  AFTERGLOW_CHECK(check_replaceable(path));
   Temporary temporary(path);
-  if (!write_new(temporary.path(), content, status.st_mode & 07777)) {
+  if (!write_new(temporary.path(), content, status)) {
     const int reason = errno;
     return failed(reason);
   }

@@ -10,7 +10,8 @@
 namespace afterglow {
 
 /// Replaces the content whole or not at all, and on disk before it appears. Links are followed: the file they lead to
-/// is replaced and they stay. Mode bits are kept. On error nothing is left behind. Errors: io.
+/// is replaced and they stay. Mode bits are kept, and the owner as far as the user may. On error nothing is left
+/// behind. Errors: io.
 Result<void> replace_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace afterglow

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -19,12 +20,16 @@
 
 #include "core/file_descriptor.h"
 #include "core/hash.h"
+#include "core/printable.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMachineDigits = 8;
+constexpr int kMostLinks = 40;           // as many as Linux follows
+constexpr std::size_t kMostName = 96;    // bytes: with the mark below 143, the least that file systems take
+constexpr std::size_t kMostEnding = 12;  // no format's is longer
 
 /// Processes with the same one can tell by their numbers whether they live: they share a running kernel and its
 /// numbers.
@@ -84,18 +89,36 @@ void give_mode(const fs::path& path, fs::perms mode) {
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
   const unsigned count = counter++;
-  const auto name =
-      fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), temporary_mark(), count, path.extension().string());
+  const auto name = fmt::format(".{}.{}-{}.tmp{}", cut_utf8(path.stem().string(), kMostName), temporary_mark(), count,
+                                cut_utf8(path.extension().string(), kMostEnding));
   fs::path temporary = path.parent_path() / name;
   remember(count, temporary.string());
   return temporary;
 }
 
 fs::path behind_links(const fs::path& path) {
+  fs::path at = path;
   std::error_code ec;
-  if (!fs::is_symlink(path, ec)) return path;
-  const fs::path target = fs::weakly_canonical(path, ec);
-  return ec ? path : target;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(at, ec); ++links) {
+    const fs::path next = fs::read_symlink(at, ec);
+    if (ec) break;
+    at = at.parent_path() / next;
+  }
+  return at;
+}
+
+Result<void> check_replaceable(const fs::path& path) {
+  if (access(path.c_str(), W_OK) == 0 || errno == ENOENT) return {};
+  return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(errno)), path.string()};
+}
+
+bool is_stream(const fs::path& path) {
+  const std::string name = path.string();
+  for (const char* of_processes : {"/dev/std", "/dev/fd/", "/proc/"})
+    if (name.starts_with(of_processes)) return true;
+  std::error_code ec;
+  const auto status = fs::status(path, ec);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
 Temporary::Temporary(fs::path target)
@@ -111,6 +134,7 @@ Temporary::~Temporary() {
 }
 
 Result<void> Temporary::commit() {
+  AFTERGLOW_CHECK(check_replaceable(named_));
   std::error_code ec, ignored;
   if (const auto there = fs::status(target_, ignored); fs::is_regular_file(there))
     give_mode(path_, there.permissions());

@@ -10,11 +10,19 @@
 namespace afterglow {
 
 /// A name in the same folder that no other process or thread uses, hidden and ending in the same extension (image
-/// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`.
+/// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`, with the beginning of a long name.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
-/// The file that a link leads to at last; what is no link, or one that leads nowhere, as it is.
+/// The file that a link leads to at last, whether it is there or not; what is no link as it is. Of links that lead to
+/// each other one of them.
 std::filesystem::path behind_links(const std::filesystem::path& path);
+
+/// Whether what is at `path` may be written, so that another may take its place; nothing may be there. (A folder lets
+/// everybody who may write into it replace what others own or have made read-only.) Errors: io.
+Result<void> check_replaceable(const std::filesystem::path& path);
+
+/// Is it written to as it stands: a device, a pipe, what /dev/stdout, /dev/stderr, /dev/fd and /proc lead to?
+bool is_stream(const std::filesystem::path& path);
 
 /// What is written under such a name, a file or a folder. It is gone with this, whatever happens, unless it was
 /// committed.
@@ -27,7 +35,7 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Renames it over the target, whose permissions it takes. Errors: io.
+  /// Renames it over the target, whose permissions it takes. Errors: io (the target may not be written, too).
   Result<void> commit();
 
  private:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/memory_limit.h"
 #include "core/text.h"
 #include "graph/history.h"
 
@@ -67,8 +68,8 @@ std::vector<Arena::Wanted> Arena::wanted(const Device& device, const Graph& grap
 
 Result<void> Arena::check_memory(const ArenaOptions& options) const {
   if (memory_.arena <= options.max_memory) return {};
-  return Error{ErrorKind::io, fmt::format("the stack needs {} for its images, more than the {} allowed (--max-memory)",
-                                          memory_text(memory_.arena), memory_text(options.max_memory))};
+  return Error{ErrorKind::io, fmt::format("the stack needs {} for its images, more than the {}",
+                                          memory_text(memory_.arena), allowed_memory(options.max_memory))};
 }
 
 Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/memory_limit.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
 #include "exec/host_input.h"
@@ -34,9 +35,8 @@ Result<void> FrameImages::check_memory(const std::map<std::string, ImageDesc>& d
   std::uint64_t total = other_bytes;
   for (const auto& [name, desc] : descs) total += image_bytes(desc);
   if (total <= options_.max_memory) return {};
-  return Error{ErrorKind::io,
-               fmt::format("the frame needs {} of device memory, more than the {} allowed (--max-memory)",
-                           memory_text(total), memory_text(options_.max_memory))};
+  return Error{ErrorKind::io, fmt::format("the frame needs {} of device memory, more than the {}", memory_text(total),
+                                          allowed_memory(options_.max_memory))};
 }
 
 Result<void> FrameImages::prepare(const Program& program, const std::map<std::string, HostImage>& host) {

@@ -101,6 +101,14 @@ std::vector<std::string> picture_extensions() {
   return names;
 }
 
+std::vector<std::string> compression_names() {
+  std::vector<std::string> names;
+  for (const OutputFormat& format : formats())
+    for (const auto& name : format.compressions)
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  return names;
+}
+
 Error unknown_format(const std::filesystem::path& file, const std::vector<std::string>& known) {
   const std::string extension = lower(file.extension().string());
   return {ErrorKind::usage,

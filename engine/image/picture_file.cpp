@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "core/saturated.h"
 #include "core/text.h"
@@ -26,10 +27,10 @@ Result<void> check_room(const std::filesystem::path& file, std::uint64_t least) 
 /// So is one that makes its decoder take more memory than allowed.
 Result<void> check_decoder(const std::filesystem::path& file, std::uint64_t bytes, const SizeLimits& limits) {
   if (bytes <= limits.max_bytes) return {};
-  return Error{ErrorKind::io,
-               fmt::format("needs {} to decode, more than the {} allowed (--max-memory)", memory_text(bytes),
-                           memory_text(limits.max_bytes)),
-               file.string()};
+  return Error{
+      ErrorKind::io,
+      fmt::format("needs {} to decode, more than the {}", memory_text(bytes), allowed_memory(limits.max_bytes)),
+      file.string()};
 }
 
 Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::path& file, const SizeLimits& limits) {

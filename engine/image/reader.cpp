@@ -10,6 +10,7 @@
 
 #include "core/exception.h"
 #include "core/file_record.h"
+#include "core/memory_limit.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
 #include "image/exr_header.h"
@@ -290,10 +291,10 @@ Result<Picture> read_opened(Opened& opened, const ReadOptions& options, Diagnost
     return Error{ErrorKind::other, "was read before with this header", plan.file->path().string()};
   keep_wanted(plan.auxiliary, options.auxiliary);
   if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
-    return Error{ErrorKind::io,
-                 fmt::format("needs {} of memory, more than the {} allowed (--max-memory)", memory_text(bytes),
-                             memory_text(options.max_bytes)),
-                 plan.file->path().string()};
+    return Error{
+        ErrorKind::io,
+        fmt::format("needs {} of memory, more than the {}", memory_text(bytes), allowed_memory(options.max_bytes)),
+        plan.file->path().string()};
   auto picture = read_planned(plan, options, diagnostics);
   // Whatever was read then, it is neither the old picture nor the new one.
   if (const auto changed = first_changed(opened.looks))

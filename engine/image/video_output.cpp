@@ -153,8 +153,7 @@ Result<const Codec*> codec_of(const Container& container, const WriteOptions& op
   std::string name = plain_name(options.video.codec);
   if (name.empty()) name = container.codecs.front();
   if (options.video.codec.empty() && name == "prores" && has_alpha) name = "prores4444";
-  std::vector<std::string> known;
-  for (const Codec& codec : codecs()) known.emplace_back(codec.name);
+  const std::vector<std::string> known = video_codecs();
   const auto codec = std::ranges::find(codecs(), name, [](const Codec& c) { return c.name; });
   if (codec == codecs().end())
     return Error{ErrorKind::usage,       fmt::format("'{}' is no codec that is written", options.video.codec),
@@ -208,6 +207,12 @@ Result<void> choose_quality(const Codec& codec, const WriteOptions& options, con
 }  // namespace
 
 bool is_video_output(const std::filesystem::path& file) { return container_of(file) != nullptr; }
+
+std::vector<std::string> video_codecs() {
+  std::vector<std::string> names;
+  for (const Codec& codec : codecs()) names.emplace_back(codec.name);
+  return names;
+}
 
 std::vector<std::string> video_extensions() {
   std::vector<std::string> names;
@@ -291,7 +296,8 @@ void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held) {
 double said_fps(const FileFacts& picture) {
   const MetadataValue* said = find_metadata(picture.metadata, "FramesPerSecond");
   const auto rate = said ? rate_of(*said) : std::nullopt;
-  return rate ? static_cast<double>(rate->numerator) / rate->denominator : 0;
+  const double fps = rate ? static_cast<double>(rate->numerator) / rate->denominator : 0;
+  return fps >= kSlowestRate && fps <= kFastestRate ? fps : 0;
 }
 
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file) {
@@ -309,12 +315,13 @@ Result<void> check_video_size(const VideoPlan& plan, Size size, const std::files
 }
 
 Rational frame_rate(double fps) {
+  fps = std::clamp(fps, kSlowestRate, kFastestRate);
   constexpr double kNtsc = 1000.0 / 1001;
   const double whole = std::round(fps), film = std::round(fps / kNtsc);
   if (std::abs(fps - whole) < 1e-6) return {static_cast<int>(whole), 1};
   if (std::abs(fps - film * kNtsc) < 1e-3) return {static_cast<int>(film) * 1000, 1001};
   constexpr int kParts = 1000000;
-  const int parts = static_cast<int>(std::lround(std::min(fps, 2000.0) * kParts)), common = std::gcd(parts, kParts);
+  const int parts = static_cast<int>(std::lround(fps * kParts)), common = std::gcd(parts, kParts);
   return {parts / common, kParts / common};
 }
 

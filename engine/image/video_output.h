@@ -24,6 +24,8 @@ namespace afterglow {
 bool is_video_output(const std::filesystem::path& file);
 /// Those extensions, with the dot.
 std::vector<std::string> video_extensions();
+/// Names of `--codec`.
+std::vector<std::string> video_codecs();
 
 /// Part of the source that is copied beside the frames. Times in microseconds of its clock.
 struct CopyRange {
@@ -73,7 +75,10 @@ Result<void> check_video_size(const VideoPlan& plan, Size size, const std::files
 /// Primaries, transfer and matrix of a space, by ITU-T H.273; 2 where there is no number.
 void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPlan& plan);
 
-/// 23.976 is 24000/1001.
+/// Frames a second that every container and encoder was seen to take.
+inline constexpr double kSlowestRate = 0.001, kFastestRate = 1000;
+
+/// 23.976 is 24000/1001. The nearest rate that a video can have.
 Rational frame_rate(double fps);
 
 /// "8M", "500k", "2500000". Errors: usage.

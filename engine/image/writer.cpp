@@ -134,7 +134,8 @@ std::uint64_t write_bytes(const fs::path& file, const WriteOptions& options, Siz
 
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {
   AFTERGLOW_CHECK(check_format(file, options));
-  return check_place(file);
+  AFTERGLOW_CHECK(check_place(file));
+  return check_replaceable(file);
 }
 
 Result<void> check_extension(const fs::path& file) {

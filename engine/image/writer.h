@@ -94,9 +94,11 @@ struct DisplayCodes {
 std::optional<DisplayCodes> display_codes(const std::filesystem::path& file, const WriteOptions& options,
                                           bool has_alpha, const FileFacts* facts);
 
-/// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For
-/// errors before the work.
+/// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written, and
+/// what is in its place, too. For errors before the work.
 Result<void> check_output(const std::filesystem::path& file, const WriteOptions& options);
+/// What some format takes as WriteOptions::compression, without levels.
+std::vector<std::string> compression_names();
 /// Whether pictures or videos have such an extension. Errors: usage.
 Result<void> check_extension(const std::filesystem::path& file);
 /// The format of a picture alone. Errors: usage.

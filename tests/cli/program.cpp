@@ -2,7 +2,9 @@
 #include "program.h"
 
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +28,10 @@ namespace {
     const rlimit limit{static_cast<rlim_t>(options.largest_file), static_cast<rlim_t>(options.largest_file)};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU})  // a shell that runs tests behind it has them ignored
+    std::signal(signal, signal == options.ignored ? SIG_IGN : SIG_DFL);
+  if (options.bound)
+    for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH}) prctl(PR_CAPBSET_DROP, right);
   const std::string program = options.program.empty() ? AFTERGLOW_PROGRAM : options.program;
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));

@@ -76,7 +76,17 @@ TEST_F(Completions, BashOffersCommandsOptionsAndValues) {
   fs::create_directories(path("folder"));
   write("folder.lua", "");
   EXPECT_THAT(offered("run --path fol"), testing::ElementsAre("folder"));
-  EXPECT_THAT(offered("run look"), IsEmpty()) << "files are the shell's own";
+  EXPECT_THAT(offered("run look.lua look"), IsEmpty()) << "files are the shell's own";
+  EXPECT_THAT(offered("run --codec prores4"), testing::ElementsAre("prores4444"));
+  EXPECT_THAT(offered("run --compression pxr"), testing::ElementsAre("pxr24"));
+  EXPECT_THAT(offered("run --input-space acescg"), testing::ElementsAre("acescg"));
+  write("neon_of_mine.lua", "");
+  EXPECT_THAT(offered("run neon_n"), testing::ElementsAre("neon_night", "neon_noir"));
+  EXPECT_THAT(offered("run neon_o"), testing::ElementsAre("neon_of_mine.lua"));
+  EXPECT_THAT(offered("effects vign"), testing::ElementsAre("vignette"));
+  EXPECT_THAT(offered("farm ret"), testing::ElementsAre("retry"));
+  EXPECT_THAT(offered("completion z"), testing::ElementsAre("zsh"));
+  EXPECT_THAT(offered("man expl"), testing::ElementsAre("explain"));
 }
 
 TEST_F(Completions, UnknownShellsAndCommandsAreRefused) {

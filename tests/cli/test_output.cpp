@@ -102,6 +102,69 @@ TEST_F(Output, ReportThatCannotBeWritten) {
   EXPECT_TRUE(fs::exists(path("a.png"))) << "the picture itself is fine";
 }
 
+TEST_F(Output, ReadOnlyFilesAreNotReplaced) {
+  for (const char* name : {"a.png", "o.0001.png", "report.json"}) {
+    write(name, "");
+    fs::permissions(path(name), fs::perms::owner_read);
+  }
+  fs::copy_file(path("a.exr"), path("s.0001.exr"));
+  fs::copy_file(path("a.exr"), path("s.0002.exr"));
+  const auto before = files();
+  const auto refuses = [&](const char* input, const std::vector<std::string>& more, const std::string& name) {
+    std::vector<std::string> words{"run", "look.lua", input};
+    words.insert(words.end(), more.begin(), more.end());
+    expect_failure(run(words, {.bound = true}), name + ": error: cannot be written: Permission denied");
+    EXPECT_EQ(files(), before) << "before any work";
+    EXPECT_EQ(read(name), "");
+  };
+  refuses("a.exr", {"-o", "a.png"}, "a.png");
+  refuses("s.####.exr", {"-o", "o.####.png"}, "o.0001.png");
+  refuses("a.exr", {"-o", "b.png", "--report", "report.json"}, "report.json");
+}
+
+TEST_F(Output, WhatResumeKeepsMayBeReadOnly) {
+  for (const char* name : {"s.0001.exr", "s.0002.exr"}) {
+    fs::copy_file(path("a.exr"), path(name));
+    fs::last_write_time(path(name), fs::file_time_type::clock::now() - std::chrono::hours(1));
+  }
+  const std::vector<std::string> words{"run", "look.lua", "s.####.exr", "-o", "o.####.png", "--resume"};
+  ASSERT_EQ(run(words).exit_code, kDone);
+  fs::permissions(path("o.0001.png"), fs::perms::owner_read);
+  fs::remove(path("o.0002.png"));
+  const Outcome outcome = run(words, {.bound = true});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+}
+
+/// Whoever may write into the outputs' folder may write their notes; where they cannot be, frames are made all the
+/// same.
+TEST_F(Output, NotesAreAsOpenAsTheFolderAndNoReasonToFail) {
+  for (const char* name : {"s.0001.exr", "s.0002.exr"}) fs::copy_file(path("a.exr"), path(name));
+  fs::create_directory(path("out"));
+  fs::permissions(path("out"), fs::perms::all);
+  ASSERT_EQ(run({"run", "look.lua", "s.####.exr", "-o", "out/"}).exit_code, kDone);
+  EXPECT_EQ(fs::status(path("out/.afterglow")).permissions(), fs::perms::all);
+  fs::remove_all(path("out/.afterglow"));
+  fs::create_directory(path("out/.afterglow"));
+  fs::permissions(path("out/.afterglow"), fs::perms::owner_read | fs::perms::owner_exec);
+  const Outcome outcome = run({"run", "look.lua", "s.####.exr", "-o", "out/"}, {.bound = true});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("cannot be written: Permission denied; --resume will make such frames again"));
+}
+
+TEST_F(Output, ALinkThatLeadsNowhereStays) {
+  fs::create_directory(path("disk"));
+  fs::create_symlink("disk/o.png", path("o.png"));
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "o.png"}).exit_code, kDone);
+  EXPECT_TRUE(fs::is_symlink(path("o.png")));
+  EXPECT_TRUE(fs::is_regular_file(path("disk/o.png")));
+}
+
+TEST_F(Output, LongNamesCanBeWritten) {
+  const std::string name = std::string(251, 'x') + ".png";
+  EXPECT_EQ(run({"run", "look.lua", "a.exr", "-o", name}).exit_code, kDone);
+  EXPECT_TRUE(fs::is_regular_file(path(name)));
+}
+
 TEST_F(Output, SameInputSamePixelsSameBytes) {
   for (const char* name : {"1.png", "2.png"})
     ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", name, "--dither", "blue"}).exit_code, kDone);

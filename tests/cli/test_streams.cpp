@@ -117,6 +117,16 @@ TEST_P(Signals, EndASequenceAndLeaveNothingHalfWritten) {
   EXPECT_FALSE(fs::exists(path("out.1060.exr")));
 }
 
+TEST_P(Signals, StayIgnoredWhereTheParentIgnoresThem) {
+  make_preset("look.lua");
+  for (int frame = 1; frame <= 20; ++frame) make_exr("in/a." + std::to_string(1000 + frame) + ".exr");
+  RunOptions options{.ignored = GetParam()};
+  options.meanwhile = [&](int process) { return fs::exists(path("out.1002.exr")) && kill(process, GetParam()) == 0; };
+  const Outcome outcome = run({"run", "look.lua", "in/a.####.exr", "-o", "out.####.exr"}, options);
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_TRUE(fs::exists(path("out.1020.exr")));
+}
+
 /// A driver that draws or compiles for minutes.
 TEST_P(Signals, EndWhatDoesNotListen) {
   write("shaders/slow/apply.glsl",
@@ -145,7 +155,7 @@ TEST_P(Signals, EndWhatDoesNotListen) {
   EXPECT_FALSE(has_temporaries());
 }
 
-INSTANTIATE_TEST_SUITE_P(Cli, Signals, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
+INSTANTIATE_TEST_SUITE_P(Cli, Signals, ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGXCPU),
                          [](const auto& info) { return "signal" + std::to_string(info.param); });
 
 }  // namespace

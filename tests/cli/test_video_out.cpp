@@ -209,6 +209,18 @@ TEST_F(VideoOut, FullDisk) {
   EXPECT_EQ(read("a.mkv"), "yesterday's");
 }
 
+TEST_F(VideoOut, ReadOnlyFilesAreNotReplaced) {
+  make_frames(2);
+  write("a.mkv", "yesterday's");
+  fs::permissions(path("a.mkv"), fs::perms::owner_read);
+  const auto before = files();
+  const Outcome outcome = make_video("a.mkv", {}, {.bound = true});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("a.mkv: error: cannot be written: Permission denied"));
+  EXPECT_EQ(files(), before);
+  EXPECT_EQ(read("a.mkv"), "yesterday's");
+}
+
 class Interrupted : public VideoOut, public ::testing::WithParamInterface<const char*> {
  protected:
   /// Ends the run when some frames have gone into the temporary file.
@@ -231,6 +243,7 @@ TEST_P(Interrupted, LeavesNothingOrAWholeShorterVideo) {
   const std::vector<std::string> codec = {"--codec", name == "a.mkv" ? "ffv1" : "prores", "--dither", "none"};
   const Outcome gone = make_video(name, codec, interrupting());
   ASSERT_EQ(gone.exit_code, kInterrupted) << gone.err;
+  EXPECT_THAT(gone.err, HasSubstr(" of 250 frames\n")) << "there is no --resume for videos";
   EXPECT_FALSE(fs::exists(path(name)));
   EXPECT_FALSE(has_leftovers());
   auto keep = codec;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A farm's join of a video that is told to stop.
+#include <array>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "fault_test.h"
 
@@ -67,6 +69,21 @@ TEST_F(JoinFault, ToldToStopAtAnyCallItLeavesNothingAndIsRunAgain) {
   }
   EXPECT_GT(noted, 4) << "it said how it ended";
   EXPECT_LT(done, 8);
+}
+
+/// A scheduler may begin one again while it still runs.
+TEST_F(JoinFault, TwoAtTheSameTimeAreBothDone) {
+  for (int time = 0; time < 6; ++time) {
+    make_ready();
+    std::array<Outcome, 2> outcomes;
+    std::thread other([&] { outcomes[1] = run({"farm", "join", "out"}); });
+    outcomes[0] = run({"farm", "join", "out"});
+    other.join();
+    for (const Outcome& outcome : outcomes) EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_TRUE(fs::is_regular_file(path("out/a.mov")));
+    expect_nothing_left_over();
+    for (const auto& name : files()) EXPECT_FALSE(name.ends_with(".exit-4")) << name;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/exception.h"
 
@@ -21,6 +22,11 @@ TEST(Exception, WhatNobodyExpectsIsAnErrorOfOurs) {
   const Error memory = exception_error(std::bad_array_new_length());
   EXPECT_EQ(memory.kind, ErrorKind::io);
   EXPECT_EQ(memory.message, "out of memory");
+  // What std::async throws beyond `ulimit -u`.
+  const Error threads =
+      exception_error(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again)));
+  EXPECT_EQ(threads.kind, ErrorKind::io);
+  EXPECT_EQ(threads.message, "no more threads can be started (ulimit -u, or pids of the control group)");
 }
 
 }  // namespace

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "core/file.h"
+#include "core/replace_file.h"
 #include "core/temporary.h"
 
 namespace afterglow {
@@ -71,10 +76,97 @@ TEST_F(Temporaries, ALinkStaysAndWhatItLeadsToBecomesAnother) {
   ASSERT_TRUE(write_file_atomically(folder_ / "link.txt", "new"));
   EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
   EXPECT_EQ(read_file(folder_ / "store/real.txt").value(), "new");
-  EXPECT_EQ(behind_links(folder_ / "link.txt"), fs::canonical(folder_ / "store/real.txt"));
+  EXPECT_EQ(behind_links(folder_ / "link.txt"), folder_ / "store/real.txt");
   EXPECT_EQ(behind_links(folder_ / "none.txt"), folder_ / "none.txt");
-  fs::create_symlink("none.txt", folder_ / "leads_nowhere.txt");
-  EXPECT_EQ(behind_links(folder_ / "leads_nowhere.txt"), folder_ / "leads_nowhere.txt");
+}
+
+TEST_F(Temporaries, ALinkToWhatIsNotThereStaysAndItIsMade) {
+  fs::create_directory(folder_ / "store");
+  fs::create_symlink("store/again.txt", folder_ / "link.txt");
+  fs::create_symlink(folder_ / "store/real.txt", folder_ / "store/again.txt");
+  ASSERT_TRUE(write_file_atomically(folder_ / "link.txt", "new"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "store/again.txt"));
+  EXPECT_EQ(read_file(folder_ / "store/real.txt").value(), "new");
+}
+
+TEST_F(Temporaries, LinksThatLeadToEachOtherStayAndAreAnError) {
+  fs::create_symlink("b.txt", folder_ / "a.txt");
+  fs::create_symlink("a.txt", folder_ / "b.txt");
+  const auto written = write_file_atomically(folder_ / "a.txt", "new");
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().message, "cannot be written: Too many levels of symbolic links");
+  EXPECT_EQ(files(), (std::set<std::string>{"a.txt", "b.txt"}));
+}
+
+TEST_F(Temporaries, NamesAsLongAsTheyMayBeCanBeWritten) {
+  std::string longest;
+  while (longest.size() + 3 <= 251) longest += "\xE2\x82\xAC";  // €
+  for (const std::string& name : {longest + ".exr", std::string(255, 'x'), "a." + std::string(253, 'y')}) {
+    ASSERT_TRUE(write_file_atomically(folder_ / name, "new")) << name;
+    EXPECT_EQ(read_file(folder_ / name).value(), "new");
+    const std::string beside = temporary_beside(folder_ / name).filename().string();
+    EXPECT_LE(beside.size(), 143u) << "what encrypted file systems take";
+    EXPECT_NE(beside, temporary_beside(folder_ / name).filename().string());
+  }
+  const std::string beside = temporary_beside(folder_ / (longest + ".exr")).filename().string();
+  EXPECT_NE(beside.find("\xE2\x82\xAC." + temporary_mark()), std::string::npos) << "no part of a character";
+  touch(folder_ / beside);
+  EXPECT_EQ(remove_temporaries_of(temporary_mark(), folder_), 0) << "this process lives";
+}
+
+/// Calls it as somebody whom modes of files bind, root or not.
+void without_override(const std::function<void()>& call) {
+  std::thread([&] {
+    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+    std::array<__user_cap_data_struct, 2> data{};
+    syscall(SYS_capget, &header, data.data());
+    constexpr unsigned kOverrides = 1u << CAP_DAC_OVERRIDE | 1u << CAP_DAC_READ_SEARCH;
+    data[0].effective &= ~kOverrides;
+    data[0].permitted &= ~kOverrides;
+    syscall(SYS_capset, &header, data.data());
+    call();
+  }).join();
+}
+
+TEST_F(Temporaries, WhatMayNotBeWrittenIsNotReplaced) {
+  const fs::path file = folder_ / "shot.txt";
+  std::ofstream(file) << "old";
+  fs::permissions(file, fs::perms::owner_read);
+  without_override([&] {
+    EXPECT_TRUE(check_replaceable(folder_ / "none.txt"));
+    EXPECT_FALSE(check_replaceable(file));
+    const auto written = write_file_atomically(file, "new");
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().kind, ErrorKind::io);
+    EXPECT_EQ(written.error().message, "cannot be written: Permission denied");
+  });
+  EXPECT_EQ(read_file(file).value(), "old");
+  EXPECT_EQ(files(), std::set<std::string>{"shot.txt"});
+}
+
+TEST_F(Temporaries, WhatRootSavesStaysItsOwners) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  constexpr uid_t kOther = 4321;
+  const fs::path file = folder_ / "look.lua";
+  std::ofstream(file) << "old";
+  ASSERT_EQ(chown(file.c_str(), kOther, kOther), 0);
+  ASSERT_TRUE(replace_file_atomically(file, "new"));
+  struct stat status {};
+  ASSERT_EQ(stat(file.c_str(), &status), 0);
+  EXPECT_EQ(status.st_uid, kOther);
+  EXPECT_EQ(status.st_gid, kOther);
+}
+
+TEST_F(Temporaries, FilesThatCannotBeSeenAreNotCalledMissing) {
+  fs::create_directory(folder_ / "closed");
+  touch(folder_ / "closed/x.lua");
+  fs::permissions(folder_ / "closed", fs::perms::none);
+  without_override([&] {
+    EXPECT_EQ(read_named_file(folder_ / "closed/x.lua").error().message, "cannot be read: Permission denied");
+    EXPECT_EQ(missing_file(folder_ / "closed/x.lua").message, "cannot be read: Permission denied");
+  });
+  fs::permissions(folder_ / "closed", fs::perms::owner_all);
 }
 
 TEST_F(Temporaries, PermissionsStayThoseOfTheFileThatWasThere) {

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "core/memory_limit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The number that a file holds. None: it is not there, or says "max".
+std::optional<std::uint64_t> number_in(const fs::path& file) {
+  std::uint64_t number = 0;
+  return std::ifstream(file) >> number ? std::optional(number) : std::nullopt;
+}
+
+std::optional<std::uint64_t> memory_of_machine(const fs::path& root) {
+  std::ifstream in(root / "proc/meminfo");
+  std::string name, unit;
+  for (std::uint64_t kib = 0; in >> name >> kib; std::getline(in, unit))
+    if (name == "MemTotal:") return kib * 1024;
+  return std::nullopt;
+}
+
+/// The least that a group and those above it say. In a container the groups above are out of sight, and the first that
+/// is seen is its own.
+void hold_to_groups(const fs::path& tree, const fs::path& group, const char* file, MemoryLimit& limit) {
+  for (fs::path at = group.relative_path();; at = at.parent_path()) {
+    if (const auto bytes = number_in(tree / at / file); bytes && *bytes < limit.bytes)
+      limit = {*bytes, fmt::format("what the control group /{} may take", at.generic_string())};
+    if (at.empty()) return;
+  }
+}
+
+}  // namespace
+
+MemoryLimit usual_memory_limit(const fs::path& root) {
+  MemoryLimit limit;
+  if (const auto bytes = memory_of_machine(root); bytes && *bytes < limit.bytes)
+    limit = {*bytes, "what this machine has"};
+  const fs::path groups = root / "sys/fs/cgroup";
+  std::ifstream in(root / "proc/self/cgroup");
+  for (std::string line; std::getline(in, line);) {  // "0::/group", "4:memory:/group"
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const auto controllers = split(line.substr(first + 1, second - first - 1), ',');
+    const fs::path group = line.substr(second + 1);
+    if (line.starts_with("0::")) hold_to_groups(groups, group, "memory.max", limit);
+    if (std::ranges::find(controllers, "memory") != controllers.end())
+      hold_to_groups(groups / "memory", group, "memory.limit_in_bytes", limit);
+  }
+  return limit;
+}
+
+const MemoryLimit& memory_limit_of_process() {
+  static const MemoryLimit limit = usual_memory_limit();
+  return limit;
+}
+
+std::string allowed_memory(std::uint64_t bytes) {
+  const MemoryLimit& usual = memory_limit_of_process();
+  const std::string why = bytes == usual.bytes && !usual.of.empty() ? "; by default " + usual.of : "";
+  return fmt::format("{} allowed (--max-memory{})", memory_text(bytes), why);
+}
+
+}  // namespace afterglow
