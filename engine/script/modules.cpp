@@ -66,6 +66,21 @@ std::vector<fs::path> module_folders(lua_State* lua) {
   return own_first(std::move(folders), runtime.box->sources()[static_cast<std::size_t>(caller.source)].path);
 }
 
+// Modules that differ from `name` in the part behind its last point alone, and the one that is no file.
+std::vector<std::string> modules_beside(const std::vector<fs::path>& folders, const std::string& name) {
+  std::set<std::string> names{kLibrary};
+  const std::size_t point = name.rfind('.');
+  const std::string before = point == std::string::npos ? "" : name.substr(0, point + 1);
+  for (const auto& folder : folders) {
+    std::error_code ec;
+    for (fs::directory_iterator it((folder / module_file(name)).parent_path(), ec), end; !ec && it != end;
+         it.increment(ec))
+      if (it->path().extension() == ".lua" && is_identifier(it->path().stem().string()))
+        names.insert(before + it->path().stem().string());
+  }
+  return {names.begin(), names.end()};
+}
+
 fs::path find_module(const Runtime& runtime, const std::vector<fs::path>& folders, const std::string& name) {
   Sandbox& box = *runtime.box;
   box.charge(kFileCost);
@@ -82,7 +97,27 @@ fs::path find_module(const Runtime& runtime, const std::vector<fs::path>& folder
     return path;
   }
   throw failure(fmt::format("require: there is no module '{}'", name), {},
-                "\"afterglow\", and scripts beside the preset or on the search path");
+                "\"afterglow\", and scripts beside the preset or on the search path",
+                nearest_name(name, modules_beside(folders, name)));
+}
+
+int returns_nothing(lua_State* lua) {
+  throw failure(fmt::format("the module {} returns nothing", lua_tostring(lua, lua_upvalueindex(1))), {},
+                "a return at its end, of a table of functions or the like");
+}
+
+// What a module without a return is: nothing of it can be used, and whoever tries is told why.
+void push_nothing(lua_State* lua, const fs::path& file) {
+  lua_createtable(lua, 0, 0);
+  lua_createtable(lua, 0, 3);
+  for (const char* use : {"__index", "__call"}) {
+    lua_pushstring(lua, file.c_str());
+    lua_pushcclosure(lua, (&native<returns_nothing, "">), 1);
+    lua_setfield(lua, -2, use);
+  }
+  lua_pushboolean(lua, 0);
+  lua_setfield(lua, -2, "__metatable");
+  lua_setmetatable(lua, -2);
 }
 
 // Pushes what the module in a file returns; it runs once, whoever needs it.
@@ -94,10 +129,11 @@ void push_module(lua_State* lua, int cache, const fs::path& file, const std::str
   lua_pop(lua, 1);
   const Loading loading(Runtime::of(lua), key, name);
   load_chunk(lua, file);
+  Runtime::of(lua).modules.push_back(file);
   call(lua, 0, 1);
   if (lua_isnil(lua, -1)) {
     lua_pop(lua, 1);
-    lua_pushboolean(lua, 1);
+    push_nothing(lua, file);
   }
   lua_pushvalue(lua, -1);
   lua_setfield(lua, cache, key.c_str());

@@ -271,6 +271,19 @@ TEST(Escapes, ModulesOfOneFolderAreNotThoseOfAnother) {
   EXPECT_EQ(scene.build_error(), "");
 }
 
+TEST(Escapes, ModulesThatAreNotThereOrReturnNothing) {
+  Scene scene;
+  scene.write("lib/taps.lua", "local taps = {}\n");
+  scene.preset("local taps = require \"lib.tpas\"");
+  EXPECT_THAT(scene.load_error(), HasSubstr("there is no module 'lib.tpas'; allowed: \"afterglow\", and scripts beside "
+                                            "the preset or on the search path; did you mean 'lib.taps'?"));
+  scene.preset("local taps = require \"lib.taps\"\nlocal n = taps.gaussian(3)");
+  EXPECT_THAT(scene.load_error(), HasSubstr("preset.lua:2: error: the module "));
+  EXPECT_THAT(scene.load_error(), HasSubstr("lib/taps.lua returns nothing; allowed: a return at its end"));
+  scene.preset("assert(require \"lib.taps\") return require(\"afterglow\").stack {}");
+  EXPECT_EQ(scene.load_error(), "") << "one that only does something may be required";
+}
+
 TEST(Escapes, AModuleRunsOnceWhoeverNeedsIt) {
   Scene scene;
   scene.write("lib/shared.lua", "return {}");
