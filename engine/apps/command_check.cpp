@@ -70,6 +70,13 @@ std::string entry_text(const Look& look, std::size_t place) {
   return out + table.text("   ");
 }
 
+std::vector<std::string> unread_notes(const Look& look) {
+  std::vector<std::string> notes;
+  for (const auto& [effect, setting] : look.build.unread)
+    notes.push_back(fmt::format("note: setting '{}' of effect '{}' is never read", setting, effect));
+  return notes;
+}
+
 std::vector<std::string> shadow_notes(const Look& look) {
   std::vector<std::string> notes;
   std::set<std::string> seen;
@@ -102,7 +109,8 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
                  allowed_text(argument.schema), argument.schema.doc});
     out += table.text("   ");
   }
-  for (const auto& note : shadows) out += note + "\n";
+  for (const auto& notes : {shadows, unread_notes(look)})
+    for (const auto& note : notes) out += note + "\n";
   const std::string warned = warnings == 0 ? "" : fmt::format(", {} warning{}", warnings, warnings == 1 ? "" : "s");
   return out + fmt::format("{} effects, {} passes in {} kernels: no errors{}\n", entries.size(),
                            look.build.graph.passes.size(), look.plan.kernels.size(), warned);
@@ -132,10 +140,12 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
   out["passes"] = look.build.graph.passes.size();
   out["kernels"] = look.plan.kernels.size();
   out["shadows"] = shadows;
+  out["notes"] = unread_notes(look);
   return json_text(out);
 }
 
 Result<void> run_check(const CheckArguments& arguments, Console& console) {
+  console.show_prints();
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   auto [errors, warnings] = check_shaders(look);
   for (const auto& warning : warnings) console.diagnostics().warn(warning);

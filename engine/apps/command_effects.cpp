@@ -44,6 +44,8 @@ nlohmann::json as_json(const EffectSchema& effect) {
                      {"makes_light", space_json(effect, effect.space.makes)},
                      {"file", effect.file.string()},
                      {"settings", std::move(settings)}};
+  for (const auto& [key, list] : {std::pair("needs", &effect.needs), std::pair("optional", &effect.optional)})
+    out[key] = list->by_settings ? nlohmann::json("by settings") : nlohmann::json(list->names);
   for (const auto& hold : effect.invariants) out["holds"].push_back(invariant_text(hold));
   for (const auto& file : effect.shadowed) out["shadowed"].push_back(file.string());
   return out;
@@ -75,12 +77,17 @@ std::string settings_text(const EffectSchema& effect) {
 }
 
 std::string mask_text(const EffectSchema& mask) {
-  return fmt::format("{}{}: {}\n{}\n\n{}", kMask, mask.name, mask.doc, mask.file.string(), settings_text(mask));
+  std::string inputs = inputs_text(mask);
+  if (!inputs.empty()) inputs += "\n";
+  return fmt::format("{}{}: {}\n{}\n{}\n{}", kMask, mask.name, mask.doc, mask.file.string(), inputs,
+                     settings_text(mask));
 }
 
 std::string effect_text(const EffectSchema& effect) {
+  std::string about = space_text(effect);
+  if (const auto inputs = inputs_text(effect); !inputs.empty()) about += " " + inputs;
   std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n{}\n\n{}", effect.name, effect.doc, effect.at,
-                                effect.order, effect.file.string(), space_text(effect), settings_text(effect));
+                                effect.order, effect.file.string(), about, settings_text(effect));
   if (!effect.invariants.empty()) {
     std::vector<std::string> promises;
     for (const auto& hold : effect.invariants) promises.push_back(invariant_text(hold));

@@ -76,6 +76,7 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
   constexpr unsigned kSecondsToEndATrial = 30;  // a case that fails is being made small: hours of work end in a report
   allow_to_end(kSecondsToEndATrial);
   std::uint64_t failures = 0;
+  std::size_t never = 0;
   bool clean = true;
   for (const auto& device : devices) {
     console.note(fmt::format("seed {}", a.seed));
@@ -87,10 +88,14 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
     std::fflush(stdout);
     if (!a.report.empty()) AFTERGLOW_CHECK(output_file(a.report_file(device), stress::report_json(*report)));
     failures += report->summary.failures;
+    never += report->never_active.size();
+    for (const auto& one : report->never_active) console.warning(one.text());
     clean = clean && report->clean();
     if (interrupted()) return interrupt_error();
   }
   if (clean) return {};
+  if (failures == 0 && never > 0)
+    return Error{ErrorKind::other, "not everything was tried: see what was never active", "afterglow stress"};
   return Error{ErrorKind::other, fmt::format("{} cases failed (seed {})", failures, a.seed), "afterglow stress"};
 }
 

@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "core/printable.h"
+
 namespace afterglow {
 namespace {
 
@@ -50,7 +52,9 @@ std::string clock_text(double seconds) {
 
 Console::Console()
     : diagnostics_([this](Severity severity, const std::string& text) {
-        severity == Severity::warning ? warning(text) : note(text);
+        severity == Severity::warning                   ? warning(text)
+        : severity == Severity::printed&& prints_shown_ ? remark(text)
+                                                        : note(text);
       }) {
   configure(Verbosity::normal, true);
 }
@@ -94,6 +98,13 @@ void Console::note(const std::string& text) {
   std::lock_guard lock(mutex_);
   erase_progress();
   log_->info("{}", text);
+}
+
+void Console::remark(const std::string& text) {
+  std::lock_guard lock(mutex_);
+  if (verbosity_ == Verbosity::quiet) return;
+  erase_progress();
+  put("note: " + printable(text) + "\n");
 }
 
 void Console::progress(std::size_t done, std::size_t total, const std::string& label, double seconds) {

@@ -33,6 +33,7 @@ class Console {
   void warning(const std::string& text);
   std::size_t warnings() const { return warnings_; }  ///< that there were, also where nobody sees them
   void note(const std::string& text);                 ///< shown with -v
+  void show_prints() { prints_shown_ = true; }        ///< what scripts print is shown without -v
   /// Warnings and notes of the engine end here.
   Diagnostics& diagnostics() { return diagnostics_; }
 
@@ -41,12 +42,14 @@ class Console {
   void end_progress();
 
  private:
+  void remark(const std::string& text);
   void erase_progress();  // with mutex_ held
   std::mutex mutex_;
   std::atomic<std::size_t> warnings_ = 0;
   std::shared_ptr<spdlog::logger> log_;
   Diagnostics diagnostics_;
   Verbosity verbosity_ = Verbosity::normal;
+  bool prints_shown_ = false;
   bool terminal_ = false, color_ = false, progress_shown_ = false;
 };
 

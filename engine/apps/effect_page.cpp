@@ -7,6 +7,7 @@
 
 #include "apps/setting_text.h"
 #include "core/file.h"
+#include "core/text.h"
 
 namespace afterglow {
 namespace {
@@ -43,10 +44,21 @@ std::string space_text(const EffectSchema& effect) {
                      needs == LightSpace::any ? "any" : "", space_name(makes));
 }
 
+std::string inputs_text(const EffectSchema& effect) {
+  std::vector<std::string> parts;
+  for (const auto& [verb, list] : {std::pair("Needs", &effect.needs), std::pair("Uses", &effect.optional)})
+    if (!list->names.empty()) parts.push_back(fmt::format("{} {}.", verb, join(list->names)));
+  for (const auto& [verb, list] : {std::pair("needs", &effect.needs), std::pair("uses", &effect.optional)})
+    if (list->by_settings) parts.push_back(fmt::format("Which inputs it {} depends on its settings.", verb));
+  return join(parts, " ");
+}
+
 std::string effect_page(const EffectSchema& effect) {
   std::string out = fmt::format("## {}\n\n{}\n\n", effect.name, effect.doc);
   if (const auto notes = head_comment(effect.file); !notes.empty()) out += notes + "\n";
-  out += fmt::format("Runs at `{}`, order {}. {}\n\n", effect.at, effect.order, space_text(effect));
+  const std::string inputs = inputs_text(effect);
+  out += fmt::format("Runs at `{}`, order {}. {}{}{}\n\n", effect.at, effect.order, space_text(effect),
+                     inputs.empty() ? "" : " ", inputs);
   if (effect.settings.empty()) return out;
   out += "| setting | type | allowed | default | what it does |\n|---|---|---|---|---|\n";
   for (const auto& setting : effect.settings)

@@ -15,7 +15,8 @@
 namespace afterglow {
 
 Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console) {
-  AFTERGLOW_TRY(const PresetOptions options, arguments.options());
+  AFTERGLOW_TRY(PresetOptions options, arguments.options());
+  options.note_reads = true;
   AFTERGLOW_TRY(const std::filesystem::path file, arguments.preset_file());
   Look look;
   look.shaders = std::make_unique<ShaderLibrary>(search_path_for(file, options.paths));

@@ -10,7 +10,8 @@
 
 namespace afterglow {
 
-enum class Severity { note, warning };
+/// `printed`: a note that a script prints, which its author wants to see.
+enum class Severity { note, printed, warning };
 
 /// A sink of messages that do not stop the work. Thread-safe; the sink is called under a lock.
 class Diagnostics {
@@ -21,6 +22,7 @@ class Diagnostics {
 
   void warn(const std::string& message) { emit(Severity::warning, message); }
   void note(const std::string& message) { emit(Severity::note, message); }
+  void print(const std::string& message) { emit(Severity::printed, message); }
   /// Warns once per distinct `key` over the life of this object.
   void warn_once(const std::string& key, const std::string& message);
 

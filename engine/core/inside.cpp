@@ -2,6 +2,7 @@
 #include "core/inside.h"
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 
 namespace afterglow {
@@ -15,6 +16,23 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
   if (ec) return false;
   const auto [end, ignored] = std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end());
   return end == real_folder.end();
+}
+
+bool is_named_in(const fs::path& file, const fs::path& folder) {
+  const fs::path rest = file.lexically_normal().lexically_relative((folder / "").lexically_normal());
+  return !rest.empty() && *rest.begin() != "..";
+}
+
+std::vector<fs::path> own_first(std::vector<fs::path> folders, const fs::path& file) {
+  const auto depth = [](const fs::path& folder) {
+    const fs::path normal = folder.lexically_normal();
+    return std::distance(normal.begin(), normal.end());
+  };
+  auto own = folders.end();
+  for (auto folder = folders.begin(); folder != folders.end(); ++folder)
+    if (is_named_in(file, *folder) && (own == folders.end() || depth(*folder) > depth(*own))) own = folder;
+  if (own != folders.end()) std::rotate(folders.begin(), own, own + 1);
+  return folders;
 }
 
 }  // namespace afterglow

@@ -14,6 +14,7 @@
 
 #include "core/file.h"
 #include "core/file_record.h"
+#include "core/inside.h"
 #include "core/own_file.h"
 #include "core/pack.h"
 #include "core/text.h"
@@ -76,12 +77,13 @@ std::vector<fs::path> SearchPath::find_script(const std::string& name, const std
   return hits;
 }
 
-std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
-  std::vector<fs::path> hits;
-  for (const auto& root : user)
-    if (is_file(root / "shaders" / name, record.get())) hits.push_back(root / "shaders" / name);
-  if (!installation.empty() && is_file(installation / "shaders" / name, record.get()))
-    hits.push_back(installation / "shaders" / name);
+std::vector<fs::path> SearchPath::find_shader(const std::string& name, const fs::path& from) const {
+  std::vector<fs::path> folders, hits;
+  for (const auto& root : user) folders.push_back(root / "shaders");
+  if (!installation.empty()) folders.push_back(installation / "shaders");
+  if (!from.empty()) folders = own_first(std::move(folders), from);
+  for (const auto& folder : folders)
+    if (is_file(folder / name, record.get())) hits.push_back(folder / name);
   return hits;
 }
 

@@ -31,8 +31,9 @@ struct SearchPath {
   std::vector<std::filesystem::path> find_effect(const std::string& name) const { return find_script(name, "effects"); }
   /// The same in folders of another name: `masks/NAME.lua`, `scripts/masks/NAME.lua`.
   std::vector<std::filesystem::path> find_script(const std::string& name, const std::string& folder) const;
-  /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first.
-  std::vector<std::filesystem::path> find_shader(const std::string& name) const;
+  /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first. Of the file that asks for
+  /// it (`from`) the own folder goes before all others.
+  std::vector<std::filesystem::path> find_shader(const std::string& name, const std::filesystem::path& from = {}) const;
   /// Folders in which files are found that scripts name, like "luts/film.cube"; those of the installation lie in
   /// assets/.
   std::vector<std::filesystem::path> asset_folders() const;

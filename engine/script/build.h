@@ -22,6 +22,10 @@ struct Promises {
   std::vector<Invariant> invariants;
 };
 
+struct UnreadSetting {
+  std::string effect, setting;
+};
+
 struct Build {
   BuildContext context;     ///< of the frame
   double length_scale = 1;  ///< pixels for each pixel that settings in px are given in
@@ -31,7 +35,12 @@ struct Build {
   std::shared_ptr<const Explanation> explanation;  ///< how the settings came about. Never null
   std::vector<Promises> promises;      ///< parallel to `entries`, as far as `promise_error` let them be asked
   std::optional<Error> promise_error;  ///< the frame is none the worse for it
-  Dependencies depends;                ///< of this frame's passes
+  Dependencies depends;  ///< of this frame's passes
+  /// Of a preset's first frame, which is built twice: "effect 'e': build gives another graph the second time: …", which
+  /// was warned about too. Empty: it does not, or this is another frame.
+  std::string changing;
+  /// Settings that nothing of an active effect reads, whatever the others are; with PresetOptions::note_reads.
+  std::vector<UnreadSetting> unread;
   /// Everything that was looked at on disk for it so far, also in vain. Never null; the same value while nothing was
   /// added.
   std::shared_ptr<const FileProbes> files;

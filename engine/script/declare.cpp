@@ -142,7 +142,10 @@ void read_settings(lua_State* lua, TableReader& table, EffectSchema& schema) {
 FunctionRef read_function(lua_State* lua, TableReader& table, const char* name, bool needed) {
   table.push(name);
   if (lua_isfunction(lua, -1)) return {luaL_ref(lua, LUA_REGISTRYINDEX)};
-  if (needed || !lua_isnil(lua, -1))
+  if (needed && lua_isnil(lua, -1)) {
+    // A key that is unknown is this one misspelt, as like as not, and says so at its own line.
+    if (!table.failed()) table.fail(failure(fmt::format("{} needs '{}', a function", table.what(), name)));
+  } else if (!lua_isnil(lua, -1))
     table.fail(
         failure(fmt::format("{}: {} = {} is not a function", table.what(), name, read_value(lua, -1).shown()), {name}));
   lua_pop(lua, 1);
@@ -279,6 +282,8 @@ int declare_effect(lua_State* lua) {
   effect.idle = read_function(lua, table, "idle", false);
   effect.needs = read_inputs(lua, table, "needs");
   effect.optional = read_inputs(lua, table, "optional");
+  schema.needs = {effect.needs.names, effect.needs.function.set()};
+  schema.optional = {effect.optional.names, effect.optional.function.set()};
   table.finish("effect");
   runtime.effects.push_back(std::move(effect));
   push_object(lua, kEffectKind, Handle{static_cast<int>(runtime.effects.size()) - 1});

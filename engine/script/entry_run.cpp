@@ -14,6 +14,7 @@
 #include "script/read_only.h"
 #include "script/setting.h"
 #include "script/table_reader.h"
+#include "script/unread.h"
 
 namespace afterglow::script {
 namespace {
@@ -109,6 +110,7 @@ void make_settings(lua_State* lua, EntryRun& run, double length_scale) {
   lua_setfield(lua, -2, "__index");
   lua_setmetatable(lua, -2);
   make_read_only(lua);
+  if (Runtime::of(lua).note_reads) note_reads(lua, run);
   run.settings_ref = luaL_ref(lua, LUA_REGISTRYINDEX);
 }
 

@@ -29,6 +29,7 @@ struct EntryRun {
   int effect = 0;
   std::vector<SettingSource> sources;  ///< as DeclaredEntry::sources
   int settings_ref = LUA_NOREF;        ///< read-only table in the registry
+  int reads_ref = LUA_NOREF;           ///< with Runtime::note_reads: table of the names that were read of it
   SettingSource opacity, blend;
   std::shared_ptr<MaskRun> mask;  ///< null: none
   std::string preset_mask;        ///< see EntryHistory::preset_mask

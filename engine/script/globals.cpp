@@ -91,7 +91,7 @@ int do_print(lua_State* lua) {
   }
   Error place;
   box.locate(place, box.caller(lua));
-  box.diagnostics->note(fmt::format("{}:{}: {}", place.file, place.line, tidy_message(line)));
+  box.diagnostics->print(fmt::format("{}:{}: {}", place.file, place.line, tidy_message(line)));
   return 0;
 }
 

@@ -57,13 +57,13 @@ std::optional<Size> read_size(TableReader& table, lua_State* lua) {
 }
 
 // "g:pass", or with the effect and the name that the script gave.
-std::string call_name(lua_State* lua, const GraphBuilder& graph, const char* call) {
+std::string call_name(lua_State* lua, const GraphBuilder& graph, const char* call, const char* noun = "pass") {
   std::string what = fmt::format("effect '{}': {}", graph.entry().effect, call);
   if (!lua_istable(lua, 2)) return what;
   lua_pushliteral(lua, "name");
   lua_rawget(lua, 2);
   if (lua_type(lua, -1) == LUA_TSTRING)
-    what = fmt::format("pass '{}.{}' of effect '{}'", graph.entry().name, tidy_message(lua_tostring(lua, -1), 60),
+    what = fmt::format("{} '{}.{}' of effect '{}'", noun, graph.entry().name, tidy_message(lua_tostring(lua, -1), 60),
                        graph.entry().effect);
   lua_pop(lua, 1);
   return what;
@@ -82,9 +82,7 @@ int graph_pass(lua_State* lua) {
   if (request.shader.empty() && !table.failed())
     table.fail(failure(fmt::format("{} needs 'shader', the name of a shader", table.what())));
   for (const auto& key : table.keys()) {
-    if (key.name == "channels" || key.name == "compute" || key.name == "name" || key.name == "reach" ||
-        key.name == "shader" || key.name == "size")
-      continue;
+    if (std::ranges::find(pass_keys(), key.name) != pass_keys().end()) continue;
     if (key.position > 0) {
       table.fail(
           failure(fmt::format("{} has a value without a name at position {}", table.what(), key.position), {key.name}));
@@ -145,14 +143,14 @@ void read_first(lua_State* lua, TableReader& table, HistoryRequest& request) {
 
 int graph_history(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:history { … }");
-  TableReader table(lua, 2, call_name(lua, graph, "g:history"));
+  TableReader table(lua, 2, call_name(lua, graph, "g:history", "history"));
   table.allow({"channels", "first", "name", "pre_roll", "precise", "size"}, false);
   HistoryRequest request;
   request.name = table.text("name", 80);
   request.size = read_size(table, lua);
   request.channels = table.number("channels");
   request.precise = table.boolean("precise").value_or(true);
-  request.pre_roll = table.integer("pre_roll");
+  request.pre_roll = table.number("pre_roll");
   read_first(lua, table, request);
   table.finish("history");
   push_image(lua, graph.history(request, place_of(lua)));

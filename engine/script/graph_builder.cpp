@@ -226,10 +226,12 @@ void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderInte
   for (const auto& input : interface.inputs) names.push_back(input.name);
   for (const auto& param : interface.params) names.push_back(param.name);
   for (const auto& argument : request.arguments)
-    if (std::find(names.begin(), names.end(), argument.name) == names.end())
+    if (std::find(names.begin(), names.end(), argument.name) == names.end()) {
+      names.insert(names.end(), pass_keys().begin(), pass_keys().end());
       fail(pass,
            fmt::format("shader '{}' has no input or parameter '{}'", request.shader, tidy_message(argument.name, 60)),
            {argument.name}, join(names), nearest_name(argument.name, names));
+    }
   const auto given = [&](const std::string& name) -> const Argument* {
     for (const auto& argument : request.arguments)
       if (argument.name == name) return &argument;

@@ -43,6 +43,12 @@ struct PassRequest {
   std::vector<Argument> arguments;  ///< "source" among them
 };
 
+/// Keys of a pass besides the inputs and parameters of its shader.
+inline const std::vector<std::string>& pass_keys() {
+  static const std::vector<std::string> keys{"channels", "compute", "name", "reach", "shader", "size"};
+  return keys;
+}
+
 struct FilterRequest {
   std::optional<std::string> name;
   std::optional<ImageRef> source;
@@ -58,7 +64,7 @@ struct HistoryRequest {
   std::array<double, 4> initial{};
   std::optional<double> channels;
   bool precise = true;
-  std::optional<int> pre_roll;
+  std::optional<double> pre_roll;
 };
 
 /// Where a script asks for a pass.

@@ -54,9 +54,10 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
   const int channels = static_cast<int>(request.channels.value_or(4));
   if (request.first && channels != 4)
     fail_history(history, "'first' is an image, which is for histories of four channels", {"first"}, "numbers");
-  if (request.pre_roll && (*request.pre_roll < 0 || *request.pre_roll > kMostPreRoll))
-    fail_history(history, fmt::format("pre_roll = {} is out of range", *request.pre_roll), {"pre_roll"},
-                 fmt::format("0…{} frames", kMostPreRoll));
+  const double pre_roll = request.pre_roll.value_or(-1);
+  if (request.pre_roll && !(pre_roll >= 0 && pre_roll <= kMostPreRoll && pre_roll == std::floor(pre_roll)))
+    fail_history(history, fmt::format("pre_roll = {} is no number of frames", number_text(pre_roll)), {"pre_roll"},
+                 fmt::format("integer 0…{}", kMostPreRoll));
   history.previous = add_image(history.name, size, -1);
   graph_.images.back().channels = channels;
   history.first = request.first ? request.first->id : kNoImage;
@@ -65,7 +66,7 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
   if (channels < 4) history.initial[2] = 0, history.initial[3] = 1;
   if (channels < 2) history.initial[1] = 0;
   history.precise = request.precise;
-  history.pre_roll = request.pre_roll.value_or(-1);
+  history.pre_roll = static_cast<int>(pre_roll);
   open_histories_.emplace_back(history.name, place);
   graph_.histories.push_back(history);
   return ref(history.previous);

@@ -25,23 +25,25 @@ namespace {
 constexpr std::uint64_t kFileCost = 100'000;    // instructions that a look at the file system counts as
 constexpr std::size_t kMaxScript = 1u << 20;    // bytes; presets are a page long
 constexpr std::size_t kMaxScripts = 16u << 20;  // of one state: their texts live outside of Lua's memory
+constexpr const char* kLibrary = "afterglow";   // the module that is no file
 const char kModules = 0;                        // registry key of the cache of modules
 
 std::string folder_of(ScriptKind kind) { return kind == ScriptKind::mask ? "masks" : "effects"; }
 
-// Marks a name as being loaded, for the life of the object.
+// Marks a script as being loaded, for the life of the object; `shown` is its name in messages.
 class Loading {
  public:
-  Loading(Runtime& runtime, std::string name) : runtime_(runtime), name_(std::move(name)) {
-    if (!runtime_.loading.insert(name_).second) throw failure(fmt::format("'{}' needs itself while it loads", name_));
+  Loading(Runtime& runtime, std::string key) : Loading(runtime, key, key) {}
+  Loading(Runtime& runtime, std::string key, const std::string& shown) : runtime_(runtime), key_(std::move(key)) {
+    if (!runtime_.loading.insert(key_).second) throw failure(fmt::format("'{}' needs itself while it loads", shown));
   }
-  ~Loading() { runtime_.loading.erase(name_); }
+  ~Loading() { runtime_.loading.erase(key_); }
   Loading(const Loading&) = delete;
   Loading& operator=(const Loading&) = delete;
 
  private:
   Runtime& runtime_;
-  std::string name_;
+  std::string key_;
 };
 
 // "lib.taps" → "lib/taps.lua"; empty when the name could lead anywhere else.
@@ -53,7 +55,33 @@ std::string module_file(const std::string& name) {
   return file + ".lua";
 }
 
-fs::path find_module(const Runtime& runtime, const std::string& name) {
+// Folders that modules may lie in, for the script that is running: the one that it comes from first, so that what lies
+// beside a preset does not change what built-in effects require, nor one pack what another does.
+std::vector<fs::path> module_folders(lua_State* lua) {
+  const Runtime& runtime = Runtime::of(lua);
+  std::vector<fs::path> folders = runtime.path.user;
+  folders.push_back(runtime.path.installation / "scripts");
+  const Location caller = runtime.box->caller(lua);
+  if (caller.source < 0) return folders;
+  return own_first(std::move(folders), runtime.box->sources()[static_cast<std::size_t>(caller.source)].path);
+}
+
+// Modules that differ from `name` in the part behind its last point alone, and the one that is no file.
+std::vector<std::string> modules_beside(const std::vector<fs::path>& folders, const std::string& name) {
+  std::set<std::string> names{kLibrary};
+  const std::size_t point = name.rfind('.');
+  const std::string before = point == std::string::npos ? "" : name.substr(0, point + 1);
+  for (const auto& folder : folders) {
+    std::error_code ec;
+    for (fs::directory_iterator it((folder / module_file(name)).parent_path(), ec), end; !ec && it != end;
+         it.increment(ec))
+      if (it->path().extension() == ".lua" && is_identifier(it->path().stem().string()))
+        names.insert(before + it->path().stem().string());
+  }
+  return {names.begin(), names.end()};
+}
+
+fs::path find_module(const Runtime& runtime, const std::vector<fs::path>& folders, const std::string& name) {
   Sandbox& box = *runtime.box;
   box.charge(kFileCost);
   const Sandbox::Pause pause(box);
@@ -61,17 +89,54 @@ fs::path find_module(const Runtime& runtime, const std::string& name) {
   if (file.empty())
     throw failure(fmt::format("require: '{}' is not the name of a module", tidy_message(name, 60)), {},
                   "names joined by '.', like \"lib.taps\"");
-  std::vector<fs::path> roots = runtime.path.user;
-  roots.push_back(runtime.path.installation / "scripts");
-  for (const auto& root : roots) {
-    const fs::path path = root / file;
+  for (const auto& folder : folders) {
+    const fs::path path = folder / file;
     if (!is_file(path, runtime.path.record.get())) continue;
-    if (!lies_in(path, root))
-      throw failure(fmt::format("require: '{}' is a link that leads out of {}", name, root.string()));
+    if (!lies_in(path, folder))
+      throw failure(fmt::format("require: '{}' is a link that leads out of {}", name, folder.string()));
     return path;
   }
   throw failure(fmt::format("require: there is no module '{}'", name), {},
-                "\"afterglow\", and scripts beside the preset or on the search path");
+                "\"afterglow\", and scripts beside the preset or on the search path",
+                nearest_name(name, modules_beside(folders, name)));
+}
+
+int returns_nothing(lua_State* lua) {
+  throw failure(fmt::format("the module {} returns nothing", lua_tostring(lua, lua_upvalueindex(1))), {},
+                "a return at its end, of a table of functions or the like");
+}
+
+// What a module without a return is: nothing of it can be used, and whoever tries is told why.
+void push_nothing(lua_State* lua, const fs::path& file) {
+  lua_createtable(lua, 0, 0);
+  lua_createtable(lua, 0, 3);
+  for (const char* use : {"__index", "__call"}) {
+    lua_pushstring(lua, file.c_str());
+    lua_pushcclosure(lua, (&native<returns_nothing, "">), 1);
+    lua_setfield(lua, -2, use);
+  }
+  lua_pushboolean(lua, 0);
+  lua_setfield(lua, -2, "__metatable");
+  lua_setmetatable(lua, -2);
+}
+
+// Pushes what the module in a file returns; it runs once, whoever needs it.
+void push_module(lua_State* lua, int cache, const fs::path& file, const std::string& name) {
+  std::error_code ec;
+  const std::string key = fs::weakly_canonical(file, ec).string();
+  lua_pushlstring(lua, key.data(), key.size());
+  if (lua_rawget(lua, cache) != LUA_TNIL) return;
+  lua_pop(lua, 1);
+  const Loading loading(Runtime::of(lua), key, name);
+  load_chunk(lua, file);
+  Runtime::of(lua).modules.push_back(file);
+  call(lua, 0, 1);
+  if (lua_isnil(lua, -1)) {
+    lua_pop(lua, 1);
+    push_nothing(lua, file);
+  }
+  lua_pushvalue(lua, -1);
+  lua_setfield(lua, cache, key.c_str());
 }
 
 int do_require(lua_State* lua) {
@@ -83,20 +148,18 @@ int do_require(lua_State* lua) {
   lua_rawgetp(lua, LUA_REGISTRYINDEX, &kModules);
   lua_replace(lua, 1);
   lua_settop(lua, 1);
-  lua_pushlstring(lua, name.data(), name.size());
+  if (name == kLibrary) return lua_getfield(lua, 1, kLibrary), 1;
+  // What a name means where the script comes from; behind the name of the file it is what that returned.
+  const std::vector<fs::path> folders = module_folders(lua);
+  const std::string known_as = name + "\n" + folders.front().string();
+  lua_pushlstring(lua, known_as.data(), known_as.size());
   if (lua_rawget(lua, 1) != LUA_TNIL) return 1;
   lua_settop(lua, 1);
   if (!runtime.declaring) throw failure("require: can only be used while a script loads");
-  const fs::path file = find_module(runtime, name);
-  const Loading loading(runtime, name);
-  load_chunk(lua, file);
-  call(lua, 0, 1);
-  if (lua_isnil(lua, -1)) {
-    lua_pop(lua, 1);
-    lua_pushboolean(lua, 1);
-  }
-  lua_pushvalue(lua, -1);
-  lua_setfield(lua, 1, name.c_str());
+  push_module(lua, 1, find_module(runtime, folders, name), name);
+  lua_pushlstring(lua, known_as.data(), known_as.size());
+  lua_pushvalue(lua, -2);
+  lua_rawset(lua, 1);
   return 1;
 }
 
@@ -149,7 +212,7 @@ DeclaredStack load_named_stack(lua_State* lua, const std::string& name) {
   });
   if (file == hits.end()) throw failure(fmt::format("preset '{}' extends itself", name));
   for (const auto& root : runtime.path.user)
-    if (file->string().starts_with((root / "").string()) && !lies_in(*file, root))
+    if (is_named_in(*file, root) && !lies_in(*file, root))
       throw failure(fmt::format("preset '{}' is a link that leads out of {}", name, root.string()));
   auto& user = runtime.path.user;
   for (const auto& folder : folders_of_preset(*file))
@@ -209,7 +272,7 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
 void push_require(lua_State* lua) {
   lua_createtable(lua, 0, 4);
   push_library(lua);
-  lua_setfield(lua, -2, "afterglow");
+  lua_setfield(lua, -2, kLibrary);
   lua_rawsetp(lua, LUA_REGISTRYINDEX, &kModules);
   lua_pushcfunction(lua, (&native<do_require, "require">));
 }

@@ -111,16 +111,16 @@ Dependencies dependencies(const ChosenConfig& config, const std::string& text, c
   return out;
 }
 
-/// All that decides what becomes of a request: configurations take variables of the environment into account, too.
-Hash store_key(const Runtime& runtime, const std::string& request, const std::string& config,
-               const OcioSurvey& survey) {
+/// All that decides what becomes of a request.
+Hash store_key(const Runtime& runtime, const std::string& request, const std::string& config, const OcioSurvey& survey,
+               const Dependencies& depends) {
   Hasher hasher;
   hasher.add("ocio").add(request).add(hash_text(config).hex());
   for (const auto& table : survey.files) {
     const auto seen = content_seen(runtime, table.path, kMaxTable);
     hasher.add(table.path.string()).add(seen ? seen->hex() : "");
   }
-  for (char** variable = environ; variable && *variable; ++variable) hasher.add(*variable);
+  for (const auto& [name, value] : depends.environment) hasher.add(name).add(value);
   return hasher.finish();
 }
 
@@ -156,13 +156,14 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
              fmt::format("{} ({})", fault->what, config.file.filename().string()), fault->allowed, fault->nearest});
   }
   for (const auto& table : survey->files) check_table(runtime, config, *text, table);
-  auto loaded = runtime.assets.store->get<LoadedOcio>(store_key(runtime, key, *text, *survey), look_of(runtime), [&] {
+  Dependencies depends = dependencies(config, *text, *survey);
+  const Hash stored = store_key(runtime, key, *text, *survey, depends);
+  auto loaded = runtime.assets.store->get<LoadedOcio>(stored, look_of(runtime), [&] {
     auto made = ocio_shader(request);
     if (!made) throw ScriptError{std::move(made).error()};
     std::string name = "ocio/" + hash_text(made->text).hex();
     std::shared_ptr<const ImageData> table;
     if (!made->table.empty()) table = make_data(made->size, std::move(made->table), config.file);
-    Dependencies depends = dependencies(config, *text, *survey);
     depends.generated[request_text(request)] =
         Hasher().add(made->text).add(table ? table->hash.hex() : "").finish();
     return std::make_shared<const LoadedOcio>(

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "script/preset.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,81 +16,22 @@
 #include "script/native.h"
 #include "script/object.h"
 #include "script/overrides.h"
+#include "script/preset_state.h"
 #include "script/resolve.h"
 #include "script/space.h"
 
 namespace afterglow {
 
-using namespace script;
-
-struct Preset::State {
-  std::unique_ptr<Runtime> runtime;
-  ShaderLibrary* shaders = nullptr;
-  std::string file, name, input_space;
-  std::optional<double> max_error;
-  std::optional<int> reference_height;
-  double length_scale = 1;                                 // of the settings in `runs`
-  std::vector<EntryRun> runs;                              // in the order of execution
-  std::shared_ptr<const std::vector<StackEntry>> entries;  // the same, as they were resolved last
-  std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
-  std::shared_ptr<const Explanation> loaded_so;            // of that
-  std::vector<std::string> needs;
-  Surroundings surroundings;
-  std::shared_ptr<const Explanation> explanation;  // of that
-  bool may_change = false;
-  std::uint64_t evaluations = 0;
-
-  void load(lua_State* lua, const PresetOptions& options);
-  void resolve(lua_State* lua, const BuildContext& context);
-  void scale_lengths(lua_State* lua, const BuildContext& context);
-  void note_needs(lua_State* lua, const StackEntry*& current);
-  ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
-                       Diagnostics& diagnostics);
-  bool is_left_out(lua_State* lua, const EntryRun& run, GraphBuilder& graph, Diagnostics& diagnostics);
-  /// Those from `begin` to `end`, one behind the other; `current`: the one being built.
-  ImageRef build_entries(lua_State* lua, std::size_t begin, std::size_t end, GraphBuilder& graph, ImageRef image,
-                         const StackEntry*& current, Diagnostics& diagnostics);
-};
-
-namespace {
-
-void warn_without_position(const Explanation& explanation, Diagnostics& diagnostics) {
-  if (explanation.position) return;
-  for (const auto& volume : explanation.volumes)
-    if (!volume.reason.empty() && volume.weight > 0)
-      diagnostics.warn_once("no position",
-                            fmt::format("volume '{}' and others like it do not count: no position is "
-                                        "known (--at, position in the preset, worldToCamera in the file)",
-                                        volume.name));
-}
-
-// What layers there are, where one is missing.
-std::string layers_text(const std::vector<std::string>& missing, const BuildContext& context) {
-  constexpr std::size_t kMost = 20;
-  for (const auto& name : missing) {
-    if (!name.starts_with(kLayerPrefix)) continue;
-    if (context.layers.empty()) return "; the picture has no named layers";
-    std::vector<std::string> known = context.layers;
-    const std::string nearest = nearest_name(name.substr(kLayerPrefix.size()), known);
-    if (known.size() > kMost) known.resize(kMost), known.emplace_back("…");
-    return fmt::format("; the picture has the layers {}{}", join(known),
-                       nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
-  }
-  return {};
-}
-
-// Errors in an effect's own file say which entry ran it.
 Error with_entry(Error error, const StackEntry* entry) {
   if (entry && error.file != entry->file && error.kind == ErrorKind::script)
     error.trail.push_back(fmt::format("in effect '{}' of {}:{}", entry->name, entry->file, entry->line));
   return error;
 }
 
-}  // namespace
-
 void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
   runtime->given_arguments = options.arguments;
+  runtime->note_reads = options.note_reads;
   runtime->leave_out_unfit = options.leave_out_unfit;
   runtime->last_argument_must_fit = options.must_fit == MustFit::last_argument;
   DeclaredStack stack = load_stack(lua, file, options.text);
@@ -232,135 +171,6 @@ std::size_t Preset::memory_used() const {
   lua_State* lua = state_->runtime->box->lua();
   lua_gc(lua, LUA_GCCOLLECT);
   return state_->runtime->box->memory_used();
-}
-
-namespace {
-
-void warn_skipped(const StackEntry& entry, const std::string& reason, Diagnostics& diagnostics) {
-  diagnostics.warn_once(fmt::format("{}:{}: {}", entry.file, entry.name, reason),
-                        fmt::format("effect '{}' is skipped: {}", entry.name, reason));
-}
-
-}  // namespace
-
-ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
-                                    Diagnostics& diagnostics) {
-  const StackEntry& entry = run.entry;
-  if (is_left_out(lua, run, graph, diagnostics)) return source;
-  bool told = false;
-  if (auto reason = inactive_reason(lua, run, &told)) {
-    if (told) warn_skipped(entry, *reason, diagnostics);
-    graph.add_skipped(entry.name, std::move(*reason));
-    return source;
-  }
-  std::vector<std::string> inputs = needed_inputs(lua, run);
-  for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
-  graph.begin(entry, std::move(inputs), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
-  const ImageRef image = run_build(lua, run, graph, source);
-  graph.end();
-  if (image.id == source.id) {
-    graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
-    return image;
-  }
-  // What an idle effect makes is its source; that over the source is made all the same.
-  if (const auto limit = idle_limit(lua, run, source)) graph.add_idle(source, image, *limit);
-  const ImageRef seen = composite(lua, run, graph, source, image);
-  if (seen.id == source.id) graph.add_skipped(entry.name, "its mask selects nothing");
-  return seen;
-}
-
-/// Disabled, unseen, or without an input that it needs; said why.
-bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilder& graph, Diagnostics& diagnostics) {
-  const StackEntry& entry = run.entry;
-  if (!entry.enabled) {
-    graph.add_skipped(entry.name, "disabled");
-    return true;
-  }
-  if (auto reason = unseen_reason(lua, run)) {
-    graph.add_skipped(entry.name, std::move(*reason));
-    return true;
-  }
-  std::vector<std::string> inputs, missing;
-  if (!inactive_reason(lua, run)) inputs = needed_inputs(lua, run);
-  add_mask_inputs(lua, run, false, inputs);
-  for (const auto& input : inputs)
-    if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
-  if (missing.empty()) return false;
-  const std::string reason = fmt::format("no {} input", join(missing, " and ")) + layers_text(missing, graph.context());
-  if (entry.required)
-    throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
-                       entry.file, entry.line}};
-  graph.add_skipped(entry.name, reason);
-  warn_skipped(entry, reason, diagnostics);
-  return true;
-}
-
-ImageRef Preset::State::build_entries(lua_State* lua, std::size_t begin, std::size_t end, GraphBuilder& graph,
-                                      ImageRef image, const StackEntry*& current, Diagnostics& diagnostics) {
-  for (std::size_t i = begin; i < end;) {
-    const EntryRun& run = runs[i];
-    const StackEntry& entry = run.entry;
-    current = &entry;
-    const std::size_t first = i + 1, middle = first + static_cast<std::size_t>(entry.middle),
-                      last = first + static_cast<std::size_t>(entry.members);
-    i = last;
-    if (!runtime->effects[static_cast<std::size_t>(run.effect)].is_group()) {
-      image = build_entry(lua, run, graph, image, diagnostics);
-      continue;
-    }
-    if (is_left_out(lua, run, graph, diagnostics)) continue;
-    ImageRef made = image;
-    if (entry.settings.empty()) {
-      made = build_entries(lua, first, last, graph, image, current, diagnostics);
-    } else {
-      const ImageRef one = build_entries(lua, first, middle, graph, image, current, diagnostics);
-      const ImageRef other = build_entries(lua, middle, last, graph, image, current, diagnostics);
-      current = &entry;
-      made = mixed(run, graph, one, other, entry.settings.front().second.number[0]);
-    }
-    current = &entry;
-    if (made.id == image.id)
-      graph.add_skipped(entry.name, "nothing in it runs");
-    else
-      image = composite(lua, run, graph, image, made);
-  }
-  return image;
-}
-
-Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnostics) {
-  State& state = *state_;
-  Sandbox& box = *state.runtime->box;
-  GraphBuilder graph(context, *state.shaders, ++state.evaluations);
-  const StackEntry* current = nullptr;
-  ImageRef image = graph.source();
-  state.runtime->graph = &graph;
-  state.runtime->depends = {};
-  box.diagnostics = &diagnostics;
-  auto error = box.run(state.file, [&](lua_State* lua) {
-    state.scale_lengths(lua, context);
-    graph.scale_lengths(state.length_scale);
-    if (state.may_change) state.resolve(lua, context);
-    warn_without_position(*state.explanation, diagnostics);
-    image = state.build_entries(lua, 0, state.runs.size(), graph, image, current, diagnostics);
-  });
-  state.runtime->graph = nullptr;
-  box.diagnostics = nullptr;
-  if (error) return with_entry(std::move(*error), current);
-  Build out{.context = context,
-            .length_scale = state.length_scale,
-            .graph = {},
-            .entries = state.entries,
-            .explanation = state.explanation,
-            .promises = {},
-            .promise_error = {},
-            .depends = std::move(state.runtime->depends),
-            .files = {}};
-  out.graph = graph.finish(image.id);
-  out.promise_error = box.run(state.file, [&](lua_State* lua) {
-    for (const auto& run : state.runs) out.promises.push_back({run.entry.name, invariants_of(lua, run, context.size)});
-  });
-  out.files = probes();
-  return out;
 }
 
 Result<std::vector<std::string>> Preset::named_files(const BuildContext& context) {

@@ -111,6 +111,7 @@ struct PresetOptions {
   bool leave_out_unfit = false;          ///< overrides and arguments that do not fit are warned about, and no errors
   MustFit must_fit = MustFit::nothing;   ///< with that
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
+  bool note_reads = false;               ///< which settings effects read: Build::unread. Reading them takes longer
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   /// Takes down what is looked at, also by a preset that fails to load. Null: the preset's own (Build::files).
   std::shared_ptr<FileRecord> record = {};

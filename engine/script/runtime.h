@@ -119,6 +119,8 @@ struct Runtime {
   std::vector<DeclaredVolume> volumes;
   Assets assets;
   std::size_t curve_keys = 0, wanted = 0, group_members = 0;  ///< of all curves, volumes, groups: limited
+  bool note_reads = false;                                    ///< PresetOptions
+  std::vector<std::filesystem::path> modules;                 ///< files that `require` ran
   bool declaring = true;                                      ///< false once the preset is loaded
   GraphBuilder* graph = nullptr;                              ///< while `build` runs
 };

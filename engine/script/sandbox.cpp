@@ -72,6 +72,7 @@ void Sandbox::arm() {
   instructions_ = 0;
   allocated_ = 0;
   printed = 0;
+  heavy_ = {};
   began_ = thread_seconds();
   deadline_ =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.seconds));
@@ -117,13 +118,16 @@ void Sandbox::exhaust(Error error) {
 void Sandbox::on_count(lua_State* lua, lua_Debug* info) {
   Sandbox& box = of(lua);
   box.instructions_ += static_cast<std::uint64_t>(box.step_);
-  const auto place = [&](Error& error) {
+  const auto here = [&] {
     Location where;
     if (lua_getinfo(lua, "Sl", info)) where = box.location(info->source, info->currentline);
     if (where.source >= 0 && box.sources_[static_cast<std::size_t>(where.source)].library) where = box.caller(lua, 0);
-    box.locate(error, where);
+    return where;
   };
+  const auto place = [&](Error& error) { box.locate(error, here()); };
   if (!box.spent()) {
+    // Where the memory ends Lua can no longer be asked for the line.
+    if (box.used_ > box.limits_.memory / 2) box.heavy_ = here();
     // Lua's own limit lies beyond what the memory allows; this one tells what is wrong.
     lua_Debug deep{};
     if (!lua_getstack(lua, kMaxDepth, &deep)) return;
@@ -150,8 +154,10 @@ void Sandbox::charge(std::uint64_t instructions) {
 }
 
 void Sandbox::memory_failed() {
-  exhaust({ErrorKind::script,
-           fmt::format("memory limit reached: more than {} MiB", static_cast<double>(limits_.memory) / 1048576.0)});
+  Error error{ErrorKind::script,
+              fmt::format("memory limit reached: more than {} MiB", static_cast<double>(limits_.memory) / 1048576.0)};
+  locate(error, heavy_);
+  exhaust(std::move(error));
 }
 
 // ---- errors

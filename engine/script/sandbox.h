@@ -153,6 +153,7 @@ class Sandbox {
   int step_ = 0;                    // instructions between two looks at the budget
   Clock::time_point deadline_;      // before it, no script is late
   double began_ = 0;                // thread_seconds() at arm(), pauses left out
+  Location heavy_;                  // where a script was when it was last seen to hold more than half of the memory
   std::optional<Error> exhausted_;  // sticky until the next arm()
   std::vector<Source> sources_;
   // Raised errors live here and not in Lua, so that raising one needs no Lua memory; few are alive at a time.

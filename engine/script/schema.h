@@ -96,6 +96,12 @@ struct SpaceUse {
   bool view = false;                   ///< what it makes stands for codes of a display's view, by the sRGB curve
 };
 
+/// Auxiliary inputs that an effect names in `needs` or `optional`.
+struct InputSchema {
+  std::vector<std::string> names;
+  bool by_settings = false;  ///< a function of the settings says which
+};
+
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
@@ -105,6 +111,7 @@ struct EffectSchema {
   bool space_by_settings = false;           ///< it depends on settings
   std::vector<SettingSchema> settings;      ///< in order of declaration
   std::vector<InvariantSchema> invariants;  ///< what it promises
+  InputSchema needs, optional;              ///< without the first it is left out, the second it uses where they are
   std::filesystem::path file;
   std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };

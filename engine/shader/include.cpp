@@ -89,11 +89,12 @@ class Resolver {
       error.allowed = "the name of a .glsl file below a shaders folder, without '..'";
       return error;
     }
-    // A bare name is first of all a file beside this one; a name with a folder is looked up like that of a shader.
+    // A bare name is first of all a file beside this one; a name with a folder is looked up like that of a shader, but
+    // where this file comes from first: what lies beside a preset does not change what built-in shaders include.
     const fs::path beside = (from.parent_path() / line.name).lexically_normal();
     const bool bare = line.name.find('/') == std::string::npos;
     if (bare && is_file(beside, search_.record.get())) return beside;
-    if (const auto hits = search_.find_shader(line.name); !hits.empty()) return hits.front().lexically_normal();
+    if (const auto hits = search_.find_shader(line.name, from); !hits.empty()) return hits.front().lexically_normal();
     if (is_file(beside, search_.record.get())) return beside;
     Error error = shader_error(at, line.line, fmt::format("cannot find the include '{}'", line.name));
     std::vector<std::string> names = list_shader_files(from.parent_path());
@@ -155,7 +156,7 @@ bool is_safe_name(const std::string& name) {
 
 Result<void> check_inside(const SearchPath& search, const fs::path& file) {
   for (const auto& root : search.user)
-    if (file.lexically_normal().string().starts_with((root / "").lexically_normal().string()) && !lies_in(file, root))
+    if (is_named_in(file, root) && !lies_in(file, root))
       return shader_error(file.string(), 0, fmt::format("is a link that leads out of {}", root.string()));
   return {};
 }

@@ -168,11 +168,19 @@ Result<Outcome> idle(Harness& harness, const Situation& s, const Invariant&) {
   return compare(some.image, all.image, other_code ? kSame : 0, way.name(), MeasuredBy::pixel);
 }
 
+/// A frame is the same alone and within a sequence.
+Result<Outcome> rebuilt(Harness& harness, const Situation& s, const Invariant&) {
+  AFTERGLOW_TRY(const LookFacts facts, harness.facts(s.look, s.picture.color.size(), s.frame));
+  if (facts.changing.empty()) return Outcome{};
+  return Outcome{.holds = false, .measured = 1, .allowed = 0, .what = facts.changing};
+}
+
 constexpr Check kCommonChecks[] = {
     {"finite", nullptr, "nothing non-finite leaves any pass, each on its own in full floats", finite},
     {"finite_fused", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_fused},
     {"alpha", nullptr, "alpha is the source's, bit for bit", alpha},
     {"repeated", nullptr, "the same picture again gives the same bits", repeated},
+    {"rebuilt", nullptr, "build makes the same graph again, whatever frame was built in between", rebuilt},
     {"same_ways", nullptr,
      "fused or not, whatever the layout of memory: within 2e-6 of plain passes in full floats, by a pixel's "
      "largest channel",

@@ -199,6 +199,8 @@ Result<LookFacts> Harness::State::find_facts(const Look& look, Size size, double
   LookFacts facts{.entries = bench::oracle_entries(*build),
                   .invariants = {},
                   .runs = graph.result != graph.source,
+                  .left_out = graph.skipped.empty() ? "" : graph.skipped.front().reason,
+                  .changing = build->changing,
                   .passes = 0,
                   .images = {}};
   facts.passes = graph.passes.size();

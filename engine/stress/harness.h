@@ -39,6 +39,8 @@ struct LookFacts {
   std::vector<Invariant> invariants;      ///< promises of a stack of one effect that is not faded, blended or masked
   std::optional<double> error;  ///< against double precision, in full floats, as far as its effects promise it
   bool runs = false;
+  std::string left_out;  ///< why the first entry that does not run is left out; empty: all run
+  std::string changing;  ///< Build::changing
   bool divides = false;  ///< by alpha, unless that is 1 everywhere
   std::size_t passes = 0;
   std::vector<std::string> images;  ///< names of those that passes make as large as the picture: Way::show takes them

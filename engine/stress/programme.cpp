@@ -68,6 +68,10 @@ class Run {
     harness_.forget();
     const auto facts = harness_.facts(trial.look, trial.size, trial.frame);
     if (!facts) return refused(trial, facts.error());
+    Activity& activity = summary_.activity[trial.subject];
+    ++activity.trials;
+    activity.active += facts->runs;
+    if (!facts->runs) activity.reason = facts->left_out;
     for (const auto& spec : trial.pictures) AFTERGLOW_CHECK(picture(trial, spec));
     const auto turn = trial.index / trials_.subjects().size();
     if (options_.digests_every > 0 && turn % static_cast<std::uint64_t>(options_.digests_every) == 0) {

@@ -43,11 +43,18 @@ struct ProgrammeOptions {
   int kept_per_kind = 2;      ///< findings of one subject and check that are shrunk and kept; the others are counted
 };
 
+/// How often the looks of a subject did anything.
+struct Activity {
+  std::uint64_t trials = 0, active = 0;
+  std::string reason;  ///< why the last one did not
+};
+
 struct Summary {
   std::uint64_t trials = 0, cases = 0, failures = 0, refused = 0;
   double seconds = 0;
   std::map<std::string, Tally> checks;
   std::map<std::string, std::map<std::string, Tally>> subjects;  ///< by subject and check
+  std::map<std::string, Activity> activity;                      ///< by subject
   std::vector<Finding> findings;
   std::map<std::uint64_t, Hash> digests;  ///< by trial
   bool interrupted = false;

@@ -42,8 +42,23 @@ std::string finding_text(const Finding& f) {
 
 }  // namespace
 
+std::string NeverActive::text() const {
+  return fmt::format("{} was never active in {} trial{}: {}", subject, trials, trials == 1 ? "" : "s", reason);
+}
+
+std::vector<NeverActive> never_active(const Summary& summary,
+                                      const std::function<std::uint64_t(const std::string& subject)>& enough) {
+  std::vector<NeverActive> out;
+  for (const auto& [subject, activity] : summary.activity)
+    if (activity.active == 0 && !activity.reason.empty() &&
+        activity.trials >= std::max<std::uint64_t>(enough(subject), 1))
+      out.push_back({subject, activity.trials, activity.reason});
+  return out;
+}
+
 bool StressReport::clean() const {
-  return summary.failures == 0 && std::ranges::all_of(processes, [](const auto& p) { return p.different.empty(); });
+  return summary.failures == 0 && never_active.empty() &&
+         std::ranges::all_of(processes, [](const auto& p) { return p.different.empty(); });
 }
 
 std::string report_text(const StressReport& report) {
@@ -67,6 +82,8 @@ std::string report_text(const StressReport& report) {
   if (!report.growth.empty())
     out += "\nError against double precision by levels (99.99 % of samples, and the worst):\n" +
            growth_text(report.growth);
+  if (!report.never_active.empty()) out += "\n";
+  for (const auto& one : report.never_active) out += one.text() + "\n";
   if (!s.findings.empty()) out += "\n";
   for (const auto& f : s.findings) out += finding_text(f);
   for (const auto& p : report.processes)
@@ -80,7 +97,10 @@ std::string report_json(const StressReport& report) {
            {"seed", report.seed},          {"trials", s.trials},         {"cases", s.cases},
            {"failures", s.failures},       {"refused", s.refused},       {"seconds", s.seconds},
            {"interrupted", s.interrupted}, {"checks", json::object()},   {"subjects", json::object()},
-           {"findings", json::array()},    {"processes", json::array()}, {"error_growth", json::array()}};
+           {"findings", json::array()},    {"processes", json::array()}, {"error_growth", json::array()},
+           {"never_active", json::array()}};
+  for (const auto& one : report.never_active)
+    out["never_active"].push_back({{"subject", one.subject}, {"trials", one.trials}, {"reason", one.reason}});
   for (const auto& [name, tally] : s.checks) out["checks"][name] = as_json(tally);
   for (const auto& [subject, checks] : s.subjects)
     for (const auto& [name, tally] : checks) out["subjects"][subject][name] = as_json(tally);

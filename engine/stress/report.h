@@ -2,6 +2,7 @@
 // What the programme found, for people and for other programs.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "stress/growth.h"
@@ -16,13 +17,25 @@ struct ProcessCheck {
   std::vector<std::uint64_t> different;  ///< numbers of trials
 };
 
+/// A subject of which nothing was tried: every look that it was given did nothing.
+struct NeverActive {
+  std::string subject;
+  std::uint64_t trials = 0;
+  std::string reason;
+  std::string text() const;  ///< "film was never active in 12 trials: no file"
+};
+/// Of subjects that had `enough(subject)` trials.
+std::vector<NeverActive> never_active(const Summary& summary,
+                                      const std::function<std::uint64_t(const std::string& subject)>& enough);
+
 struct StressReport {
   std::string version, device, driver;
   std::uint64_t seed = 0;
   Summary summary;
   std::vector<ProcessCheck> processes;
   std::vector<GrowthRow> growth;
-  /// Nothing failed anywhere.
+  std::vector<NeverActive> never_active;
+  /// Nothing failed anywhere, and everything was tried.
   bool clean() const;
 };
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "core/paths.h"
@@ -113,6 +115,15 @@ std::pair<std::size_t, std::size_t> share_done(const ProgrammeOptions& options, 
   return {so_far.trials, round};
 }
 
+/// After how many trials it counts that a subject did nothing: those that were asked for by name at once, others when
+/// all their settings have had their turn. One trial alone may be any.
+std::uint64_t looks_of(const Trials& trials, const StressRequest& request, const std::string& subject) {
+  if (request.trial) return std::numeric_limits<std::uint64_t>::max();
+  if (!request.effects.empty() || !request.presets.empty()) return 1;
+  const auto found = std::ranges::find(trials.subjects(), subject, &Subject::name);
+  return found->looks.size();
+}
+
 }  // namespace
 
 Result<StressReport> run_stress(const StressRequest& request, Diagnostics& diagnostics, const StressEvents& events) {
@@ -132,6 +143,8 @@ Result<StressReport> run_stress(const StressRequest& request, Diagnostics& diagn
     return {};
   };
   AFTERGLOW_TRY(report.summary, run_programme(*opened.harness, trials, options, quiet, step, events.found));
+  report.never_active =
+      never_active(report.summary, [&](const std::string& subject) { return looks_of(trials, request, subject); });
   if (!report.summary.interrupted) {
     AFTERGLOW_TRY(report.processes, ask_other_processes(request, report.summary.digests, events));
   }

@@ -220,6 +220,34 @@ TEST_F(Inspect, EffectsOfAPathAreListedToo) {
   EXPECT_THAT(outcome.out, ContainsRegex("halve +post_process +1 +Half the light\\."));
 }
 
+TEST_F(Inspect, EffectsTellWhichInputsTheyReadOf) {
+  EXPECT_THAT(run({"effects", "depth_fog"}).out, HasSubstr("Needs depth."));
+  EXPECT_EQ(parsed({"effects", "depth_fog", "--json"}).at(0).at("needs"), json::array({"depth"}));
+  EXPECT_EQ(parsed({"effects", "bloom", "--json"}).at(0).at("needs"), json::array());
+  EXPECT_THAT(run({"effects", "mask.depth"}).out, HasSubstr("Needs depth."));
+}
+
+TEST_F(Inspect, CheckTellsAuthorsWhatTheyAskFor) {
+  write("effects/halve.lua",
+        "local fx = require \"afterglow\"\nlocal n = 0\nreturn fx.effect { name = \"halve\",\n"
+        "  settings = { gone = fx.float { default = 1 } },\n"
+        "  build = function(g, s, source)\n    n = n + 1\n    print(\"width\", source.width)\n"
+        "    return g:pass { shader = \"halve/halve\", source = source, k = n }\n  end }\n");
+  write("shaders/halve/halve.glsl",
+        "uniform float k;\nvec4 apply(vec4 color) { return vec4(color.rgb * k, color.a); }\n");
+  write("own.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.halve {} }\n");
+  const Outcome outcome = run({"check", "own.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("note: ./effects/halve.lua:7: width 1920\n"));
+  EXPECT_EQ(outcome.err.find("width", outcome.err.find("width") + 1), std::string::npos) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: effect 'halve': build gives another graph the second time: it keeps "
+                                     "state between frames (k of pass 'halve.halve' is 1, then 3)"));
+  EXPECT_THAT(outcome.out, HasSubstr("note: setting 'gone' of effect 'halve' is never read\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("no errors, 1 warning\n"));
+  EXPECT_EQ(run({"check", "own.lua", "-q"}).err, "");
+  EXPECT_THAT(parsed({"check", "own.lua", "--json"}).at("notes"), ::testing::SizeIs(1));
+}
+
 TEST_F(Inspect, NamesOfInputsAndFoldersAreChecked) {
   const Outcome input = run({"check", "look.lua", "--without", "deepth"});
   EXPECT_EQ(input.exit_code, kUsage);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The programme as a whole: what it tries, what it finds, how it ends.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "bad_effects.h"
@@ -68,6 +70,28 @@ TEST(StressProgramme, FindsShrinksAndKeepsAFault) {
                "uniform float strength;\nuniform float level;\nvec4 apply(vec4 color) { return vec4(color.rgb * level "
                "* (0.5 + 0.5 * strength), color.a); }\n");
   EXPECT_TRUE(outcome_of(*again).holds);
+}
+
+TEST(StressProgramme, KnowsWhatWasNeverActive) {
+  const EffectFolder folder;
+  const std::string active = "active = function(s) return s.level > 20, \"level is small\" end,";
+  folder.effect("asleep", "vec4 apply(vec4 color) { return color / (color - color) * (strength + level); }", active);
+  folder.effect("good", "vec4 apply(vec4 color) { return color * (strength + level); }");
+  const Trials trials = trials_of(folder, {"asleep", "good"}, 1);
+  Diagnostics quiet;
+  const auto summary = run_programme(harness(), trials, {.seed = 1, .cases = 40}, quiet, go_on, [](const Finding&) {});
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_EQ(summary->failures, 0u);
+  const auto never = never_active(*summary, [](const std::string&) { return 1; });
+  ASSERT_EQ(never.size(), 1u);
+  EXPECT_EQ(never.front().text(),
+            fmt::format("asleep was never active in {} trials: level is small", never.front().trials));
+  EXPECT_TRUE(never_active(*summary, [](const std::string&) { return 10000; }).empty());
+  StressReport report{.summary = *summary};
+  EXPECT_TRUE(report.clean());
+  report.never_active = never;
+  EXPECT_FALSE(report.clean());
+  EXPECT_THAT(report_text(report), testing::HasSubstr("\nasleep was never active in "));
 }
 
 TEST(StressProgramme, EndsInOrderWhenInterrupted) {

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/filter.h"
 #include "core/hash.h"
+#include "core/inside.h"
 #include "core/paths.h"
 #include "core/result.h"
 #include "core/text.h"
@@ -177,6 +178,18 @@ TEST(Text, MarkupNamesWhatItsReadersTakeForTheirs) {
   EXPECT_EQ(markup_text("a < b && c > \"d\""), "a &lt; b &amp;&amp; c &gt; &quot;d&quot;");
   EXPECT_EQ(markup_text("1920×1080"), "1920×1080");
   EXPECT_EQ(markup_text("a\x1b[2J\nb\xE2\x80\xAE"), "a [2J\nb ");
+}
+
+TEST(Inside, TheOwnFolderOfAFileComesFirst) {
+  using Paths = std::vector<std::filesystem::path>;
+  const Paths folders{".", "packs/a", "packs/ab", "/share/scripts"};
+  EXPECT_EQ(own_first(folders, "effects/e.lua"), folders);
+  EXPECT_EQ(own_first(folders, "./effects/e.lua"), folders);
+  EXPECT_EQ(own_first(folders, "packs/ab/effects/e.lua"), (Paths{"packs/ab", ".", "packs/a", "/share/scripts"}));
+  EXPECT_EQ(own_first(folders, "/share/scripts/e.lua"), (Paths{"/share/scripts", ".", "packs/a", "packs/ab"}));
+  EXPECT_EQ(own_first(folders, "../other/e.lua"), folders);
+  EXPECT_EQ(own_first(folders, "/share/scripts2/e.lua"), folders);
+  EXPECT_EQ(own_first({"a"}, "e.lua"), Paths{"a"});
 }
 
 }  // namespace

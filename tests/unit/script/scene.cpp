@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 Scene::Scene()
     : diagnostics([this](Severity severity, const std::string& text) {
-        (severity == Severity::note ? notes : warnings).push_back(shorten(text));
+        (severity == Severity::warning ? warnings : notes).push_back(shorten(text));
       }) {
   static int count = 0;
   folder_ =

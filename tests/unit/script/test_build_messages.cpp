@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What the author of an effect reads when `build` is wrong: file and line of the key, pass and effect.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scene.h"
 
 namespace afterglow::test {
 namespace {
+
+using testing::HasSubstr;
 
 using namespace std::string_literals;
 
@@ -40,9 +43,12 @@ const std::string kAt4 = "effects/probe.lua:4: error: pass 'glow.gain' of effect
 const std::string kRest = "high = source, tint = { 1, 1, 1 }, steps = 1, on = true";
 
 TEST_F(BuildMessages, UnknownNames) {
-  EXPECT_EQ(gain("high = source, gian = 1"), kAt5 +
-                                                 "shader 'gain' has no input or parameter 'gian'; allowed: source, "
-                                                 "high, gain, tint, steps, on, taps; did you mean 'gain'?");
+  EXPECT_EQ(gain("high = source, gian = 1"),
+            kAt5 +
+                "shader 'gain' has no input or parameter 'gian'; allowed: source, "
+                "high, gain, tint, steps, on, taps, channels, compute, name, reach, shader, size; "
+                "did you mean 'gain'?");
+  EXPECT_THAT(gain("high = source, chanels = 1"), HasSubstr("did you mean 'channels'?"));
   EXPECT_EQ(error("return g:pass { shader = \"plane\", source = source }").substr(0, 75),
             "effects/probe.lua:4: error: pass 'glow.plane' of effect 'probe': unknown shader 'plane'"s.substr(0, 75));
   EXPECT_EQ(error("return g:pass { source = source }"),
@@ -212,11 +218,15 @@ TEST_F(BuildMessages, Histories) {
   EXPECT_EQ(error("g:history { name = \"old\" }"),
             at + "its size is not known; allowed: size = an image, {width, height}; first = an image");
   EXPECT_EQ(error("g:history { name = \"old\", size = source,\n first = \"black\" }"),
-            "effects/probe.lua:5: error: pass 'glow.old' of effect 'probe': first = \"black\" is neither an image nor "
+            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': first = \"black\" is neither an image nor "
             "numbers; allowed: an image, a number, 1 to 4 numbers");
   EXPECT_EQ(error("g:history { name = \"old\", size = source,\n pre_roll = -1 }"),
-            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': pre_roll = -1 is out of range; allowed: "
-            "0…10000 frames");
+            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': pre_roll = -1 is no number of frames; "
+            "allowed: integer 0…10000");
+  EXPECT_THAT(error("g:history { name = \"old\", size = source, pre_roll = 1e9 }"),
+              HasSubstr("pre_roll = 1000000000 is no number of frames; allowed: integer 0…10000"));
+  EXPECT_THAT(error("g:history { name = \"old\", size = source, frist = 1 }"),
+              HasSubstr("history 'glow.old' of effect 'probe' has no 'frist'; allowed: channels, first"));
   EXPECT_EQ(error("g:history { name = \"old\", size = { 4, 4 },\n first = source }"),
             "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': 'first' is 64×32, the history 4×4; "
             "allowed: 4×4");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the author of an effect reads when its declaration is wrong.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scene.h"
@@ -47,8 +48,9 @@ TEST(DeclareMessages, Effects) {
             "'scene'?");
   EXPECT_EQ(declared("  space = {\n   makes = 1 },"),
             "effects/glow.lua:4: error: fx.effect: space: makes = 1 is no space; allowed: scene, display");
-  EXPECT_EQ(declared("  space = {\n   make = \"scene\" },"),
-            "effects/glow.lua:4: error: fx.effect: space has no 'make'; allowed: makes, needs, view; did you mean 'makes'?");
+  EXPECT_EQ(
+      declared("  space = {\n   make = \"scene\" },"),
+      "effects/glow.lua:4: error: fx.effect: space has no 'make'; allowed: makes, needs, view; did you mean 'makes'?");
   EXPECT_EQ(declared("  7,"),
             "effects/glow.lua:3: error: fx.effect has a value without a name at position 1; allowed: active, alpha, "
             "at, build, detail, doc, "
@@ -70,7 +72,11 @@ TEST(DeclareMessages, EffectFiles) {
   EXPECT_EQ(file("return fx.effect { build = function() end }"),
             "effects/glow.lua:2: error: fx.effect needs a name; allowed: letters, digits and '_'");
   EXPECT_EQ(file("return fx.effect { name = \"glow\" }"),
-            "effects/glow.lua:2: error: fx.effect: build = nil is not a function");
+            "effects/glow.lua:2: error: fx.effect needs 'build', a function");
+  EXPECT_THAT(
+      file("return fx.effect { name = \"glow\",\n biuld = function() end }"),
+      testing::AllOf(testing::StartsWith("effects/glow.lua:3: error: fx.effect has no 'biuld'; allowed: active"),
+                     testing::EndsWith("did you mean 'build'?")));
   EXPECT_EQ(file("return fx.effect { name = \"glow\", build = fx.glow }"),
             "effects/glow.lua:2: error: 'effects.glow' needs itself while it loads");
   EXPECT_EQ(file("return fx.effect {"), "effects/glow.lua:2: error: unexpected symbol near <eof>");

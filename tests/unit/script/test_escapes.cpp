@@ -7,6 +7,7 @@
 #include "scene.h"
 
 namespace afterglow::test {
+namespace fs = std::filesystem;
 namespace {
 
 using testing::AnyOf;
@@ -245,6 +246,57 @@ TEST(Escapes, PresetsOfOneProcessShareNothing) {
   EXPECT_EQ(second.load_error(), "");
   auto again = first.load();
   ASSERT_TRUE(again) << again.error().text();
+}
+
+TEST(Escapes, ModulesOfOneFolderAreNotThoseOfAnother) {
+  Scene scene, pack;
+  scene.options.paths = {pack.folder()};
+  const auto effect = [](Scene& in, const std::string& name, const std::string& check) {
+    in.effect(name, "doc = assert(" + check + ") and name, build = function(g, s, source) return source end");
+  };
+  const std::string preset =
+      "local own = require \"lib.taps\" assert(own.of == \"preset\" and own == require \"lib.taps\")\n"
+      "local fx = require \"afterglow\" return fx.stack { fx.mine {}, fx.theirs {}, fx.halation {}, fx.depth_fog {} }";
+  scene.preset(preset);
+  scene.write("lib/taps.lua", "return { of = \"preset\" }");
+  scene.write("lib/glow.lua", "return { of = \"preset\" }");
+  pack.write("lib/taps.lua", "return { of = \"pack\" }");
+  effect(scene, "mine", R"(require("lib.taps").of == "preset" and require("lib.glow").of == "preset")");
+  effect(pack, "theirs", R"(require("lib.taps").of == "pack" and require("lib.pyramid").delivered)");
+  scene.context.auxiliary = {{"depth", {64, 32}}};
+  EXPECT_EQ(scene.build_error(), "") << "built-in effects have the built-in lib.glow";
+  // A folder without such a module gets that of the first on the path.
+  fs::remove(pack.folder() / "lib/taps.lua");
+  effect(pack, "theirs", R"(require("lib.taps").of == "preset")");
+  EXPECT_EQ(scene.build_error(), "");
+}
+
+TEST(Escapes, ModulesThatAreNotThereOrReturnNothing) {
+  Scene scene;
+  scene.write("lib/taps.lua", "local taps = {}\n");
+  scene.preset("local taps = require \"lib.tpas\"");
+  EXPECT_THAT(scene.load_error(), HasSubstr("there is no module 'lib.tpas'; allowed: \"afterglow\", and scripts beside "
+                                            "the preset or on the search path; did you mean 'lib.taps'?"));
+  scene.preset("local taps = require \"lib.taps\"\nlocal n = taps.gaussian(3)");
+  EXPECT_THAT(scene.load_error(), HasSubstr("preset.lua:2: error: the module "));
+  EXPECT_THAT(scene.load_error(), HasSubstr("lib/taps.lua returns nothing; allowed: a return at its end"));
+  scene.preset("assert(require \"lib.taps\") return require(\"afterglow\").stack {}");
+  EXPECT_EQ(scene.load_error(), "") << "one that only does something may be required";
+}
+
+TEST(Escapes, AModuleRunsOnceWhoeverNeedsIt) {
+  Scene scene;
+  scene.write("lib/shared.lua", "return {}");
+  scene.write("lib/other.lua", "return { shared = require \"lib.shared\" }");
+  scene.effect("glow", "build = function(g, s, source) return source end, doc = require(\"lib.shared\").doc");
+  scene.preset(
+      "local shared = require \"lib.shared\" shared.doc = \"Seen.\" assert(require(\"lib.other\").shared == shared)\n"
+      "local fx = require \"afterglow\" return fx.stack { fx.glow {} }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_EQ(preset->schema("glow").doc, "Seen.");
+  scene.write("lib/shared.lua", "return require \"lib.shared\"");
+  EXPECT_THAT(scene.load_error(), HasSubstr("'lib.shared' needs itself while it loads"));
 }
 
 // ---- files

@@ -89,8 +89,31 @@ TEST(ShaderLibrary, EarlierFoldersShadowLaterOnes) {
   first.write("a.glsl", kSimple);
   first.write("lib/x.glsl", "float x() { return 1.0; }\n");
   EXPECT_EQ((*ShaderLibrary(search).find("a"))->path, first.path("a.glsl"));
-  EXPECT_EQ((*ShaderLibrary(search).find("b"))->includes.at(0).path, first.path("lib/x.glsl"))
-      << "a user's library replaces the built-in one";
+}
+
+TEST(ShaderLibrary, AFileIncludesWhatLiesInItsOwnFolderFirst) {
+  const std::string includes = std::string("#include \"lib/x.glsl\"\n") + kSimple;
+  ShaderFiles preset, pack, installation;
+  SearchPath search;
+  search.user = {preset.root(), pack.root()};
+  search.installation = installation.root();
+  preset.write("own.glsl", includes);
+  pack.write("of_pack.glsl", includes);
+  installation.write("built_in.glsl", includes);
+  const auto included = [&](const char* shader) {
+    const auto found = ShaderLibrary(search).find(shader);
+    return found ? (*found)->includes.at(0).path : std::filesystem::path(found.error().text());
+  };
+  installation.write("lib/x.glsl", "float x() { return 1.0; }\n");
+  EXPECT_EQ(included("own"), installation.path("lib/x.glsl"));
+  EXPECT_EQ(included("of_pack"), installation.path("lib/x.glsl"));
+  preset.write("lib/x.glsl", "float x() { return 2.0; }\n");
+  EXPECT_EQ(included("own"), preset.path("lib/x.glsl"));
+  EXPECT_EQ(included("of_pack"), preset.path("lib/x.glsl")) << "its own folder has none: in the order of the path";
+  EXPECT_EQ(included("built_in"), installation.path("lib/x.glsl"));
+  pack.write("lib/x.glsl", "float x() { return 3.0; }\n");
+  EXPECT_EQ(included("of_pack"), pack.path("lib/x.glsl"));
+  EXPECT_EQ(included("own"), preset.path("lib/x.glsl"));
 }
 
 TEST(ShaderLibrary, AByteOrderMarkIsDropped) {
