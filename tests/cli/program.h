@@ -18,12 +18,12 @@ struct Outcome {
 };
 
 struct RunOptions {
-  std::filesystem::path folder{};                  ///< working folder; empty: that of the test
-  std::map<std::string, std::string> environment;  ///< added to the test's own; an empty text removes
-  std::string program{};                           ///< empty: the built program
-  int ignored = 0;                                 ///< a signal that the program is told to ignore; 0: none
-  bool bound = false;                              ///< modes of files bind the program, also when root runs it
-  long long largest_file = 0;                      ///< bytes a file may have (RLIMIT_FSIZE); 0: no limit
+  std::filesystem::path folder{};                    ///< working folder; empty: that of the test
+  std::map<std::string, std::string> environment{};  ///< added to the test's own; an empty text removes
+  std::string program{};                             ///< empty: the built program
+  int ignored = 0;                                   ///< a signal that the program is told to ignore; 0: none
+  bool bound = false;                                ///< modes of files bind the program, also when root runs it
+  long long largest_file = 0;                        ///< bytes a file may have (RLIMIT_FSIZE); 0: no limit
   /// Called with the process id about every 10 ms until it returns true or the program ends.
   std::function<bool(int)> meanwhile{};
   std::chrono::seconds limit{120};
