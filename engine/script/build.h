@@ -35,7 +35,7 @@ struct Build {
   std::shared_ptr<const Explanation> explanation;  ///< how the settings came about. Never null
   std::vector<Promises> promises;      ///< parallel to `entries`, as far as `promise_error` let them be asked
   std::optional<Error> promise_error;  ///< the frame is none the worse for it
-  Dependencies depends;  ///< of this frame's passes
+  Dependencies depends;                ///< of this frame's passes
   /// Of a preset's first frame, which is built twice: "effect 'e': build gives another graph the second time: …", which
   /// was warned about too. Empty: it does not, or this is another frame.
   std::string changing;

@@ -54,7 +54,18 @@ TEST_F(New, ItsTestHasLightAboveWhite) {
   write("shaders/haze/haze.glsl",
         "uniform float strength;\nuniform vec3 tint;\n"
         "vec4 apply(vec4 color) { return vec4(color.rgb - strength * tint * max(color.rgb - 2.0, 0.0), color.a); }\n");
-  EXPECT_EQ(own_test("haze"), 0) << read("test.log");
+  EXPECT_NE(own_test("haze"), 0);
+  EXPECT_THAT(read("test.log"), HasSubstr("FAILED: stress: haze"))
+      << "seen to change the picture; its promises are others";
+}
+
+TEST_F(New, ItsTestTriesHardLight) {
+  ASSERT_EQ(run({"new", "effect", "haze"}).exit_code, kDone);
+  write("shaders/haze/haze.glsl",
+        "uniform float strength;\nuniform vec3 tint;\n"
+        "vec4 apply(vec4 color) { return vec4(mix(color.rgb, tint * color.a, strength), color.a); }\n");
+  EXPECT_NE(own_test("haze"), 0) << "light of 1e30 behind an alpha above 1 becomes infinite";
+  EXPECT_THAT(read("test.log"), HasSubstr("FAILED: stress: haze"));
 }
 
 TEST_F(New, NeverOverwrites) {

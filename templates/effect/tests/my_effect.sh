@@ -50,6 +50,6 @@ same half again || fail "the same frame is not the same twice"
 same half alone || fail "joined with other passes it gives another picture"
 
 # Hard pictures and settings, and what the effect says in `holds`. Longer runs find more: --for 10m.
-"$program" stress --effect my_effect --path "$(dirname "$preset")" --cases 150 --out "$work/stress" -q >"$work/stress.log" 2>&1 ||
+"$program" stress --effect my_effect --path "$(dirname "$preset")" --cases 3000 --out "$work/stress" -q >"$work/stress.log" 2>&1 ||
   fail "stress: $(grep '^my_effect' "$work/stress.log" | head -1)"
 echo "my_effect: passed"

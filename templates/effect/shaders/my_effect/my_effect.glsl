@@ -3,7 +3,7 @@
 uniform float strength;
 uniform vec3 tint;
 
-// Colours carry their alpha: a tint is as strong as the pixel is opaque. Nothing gets brighter than a picture may be.
+// Colours carry their alpha: a tint is as strong as the pixel is opaque. No light beyond what a picture may hold.
 vec4 apply(vec4 color) {
-  return vec4(mix(color.rgb, min(tint * color.a, kMaxLight), strength), color.a);
+  return vec4(mix(color.rgb, clamp(tint * color.a, -kMaxLight, kMaxLight), strength), color.a);
 }
