@@ -4,6 +4,7 @@
 -- normalised, so that the mean light stays and white stays white, and integrated over each pixel, so that no moiré appears at any size.
 local fx = require "afterglow"
 local glow = require "lib.glow"
+local pyramids = require "lib.pyramid"
 
 -- Places on the tube are rounded: the more, the larger the picture.
 local function stretch(source)
@@ -33,10 +34,10 @@ return fx.effect {
   build = function(g, s, source)
     local down = math.min(s.lines, source.height)
     local across = math.max(1, math.min(source.width, math.floor(source.width * down / source.height + 0.5)))
-    local signal = require("lib.pyramid").resized(g, source, across, down, "signal")
+    local signal = pyramids.resized(g, source, across, down, "signal")
     local spread = source
     if s.glow > 0 then
-      spread = glow.of(g, signal, 1, glow.fog(signal, 1, 0.06 * down), function(image) return image end)
+      spread = glow.of(g, signal, 1, glow.fog(signal, 1, 0.06 * down), function(width, height) return pyramids.resized(g, signal, width, height, "half") end)
     end
     local triad = math.max(s.phosphor_size, 1e-3)
     local texels = math.max(2, math.ceil(2.5 * s.softness))
