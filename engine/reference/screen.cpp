@@ -79,7 +79,7 @@ DoubleImage crt(const DoubleImage& source, const Crt& s) {
   const DoubleImage signal = resized_to(source, {across, down});
   const DoubleImage spread =
       s.glow > 0 ? glow_of(glow_half(signal), signal.size(), fog_weights(signal.size(), 0.06 * down)) : signal;
-  const double dark = s.scan_lines * glm::clamp(static_cast<double>(source.height) / down - 1, 0.0, 1.0);
+  const double dark = s.scan_lines * glm::clamp(static_cast<double>(source.height) / down - 2, 0.0, 1.0);
   const double aspect = static_cast<double>(source.width) / source.height, bend = 0.25 * s.curvature;
   const double corner = glm::max(s.corner, 1e-4);
   const Tube tube{signal, s};
@@ -97,7 +97,7 @@ DoubleImage crt(const DoubleImage& source, const Crt& s) {
     for (int c = 0; shown > 0 && c < 3; ++c) {
       double light = tube.light(px, py, c, dark) * (1 - s.glow) + glm::clamp(around[c], 0.0, 1.0) * s.glow;
       const double stripe = striped(x, s.phosphor_size, c / 3.0);
-      light *= 1 + s.phosphor * (1 - glm::clamp(light, 0.0, 1.0)) *
+      light *= 1 + s.phosphor * glm::clamp(s.phosphor_size - 2, 0.0, 1.0) * (1 - glm::clamp(light, 0.0, 1.0)) *
                        (3 * stripe - 1);
       out[c] = light * s.brightness * (1 - lost) * shown;
     }

@@ -261,6 +261,23 @@ TEST_F(Effects, CrtAgrees) {
   expect_skipped("fx.crt { intensity = 0 }", "intensity is 0");
 }
 
+TEST_F(Effects, CrtHasNoMoireOnSmallPictures) {
+  // White at 480 lines of a look made for 1080: its stripes are 1.33 pixels wide, its lines 1.78 pixels apart.
+  const Scene scene{"white", DoubleImage(256, 480, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
+  const auto made = run_stack(
+                        "fx.crt { phosphor_size = 1.3333, phosphor = 1, scan_lines = 1, curvature = 0, corner = 0, "
+                        "vignette = 0, glow = 0 }",
+                        scene, Way::plain)
+                        .result;
+  float least = 1, most = 0;
+  for (int y = 40; y < 440; ++y)
+    for (int x = 40; x < 216; ++x) {
+      const float v = made[4 * static_cast<std::size_t>(256 * y + x)];
+      least = std::min(least, v), most = std::max(most, v);
+    }
+  EXPECT_LT(most - least, 0.01F);
+}
+
 TEST_F(Effects, CrtKeepsTheMeanLight) {
   const Scene grey{"grey", DoubleImage(240, 240, Rgba(0.25, 0.25, 0.25, 1)), {}, {}};
   const Made made =
