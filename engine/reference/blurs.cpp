@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/color.h"
 #include "reference/resample.h"
 
 namespace afterglow::reference {
@@ -32,27 +31,6 @@ std::vector<Tap> mean_over(double ratio) {
   std::vector<Tap> taps;
   for (int i = 0; i < n; ++i) taps.push_back({(i - (n - 1) / 2.0) * ratio / n, 1.0 / n});
   return taps;
-}
-
-/// Every `step`th texel of an iris; texels are `side` pixels wide.
-Filter iris(double radius, const BokehBlur& s, int step, int side) {
-  const int reach = static_cast<int>(std::ceil(radius / (step * side))) + 1;
-  std::vector<Tap2d> taps;
-  double sum = 0;
-  for (int j = -reach; j <= reach; ++j)
-    for (int i = -reach; i <= reach; ++i) {
-      const double angle = std::atan2(j, i) - s.rotation * kPi / 180;
-      double on_rim = std::hypot(i, j) * step * side;
-      if (s.blades >= 3) {
-        const double part = 2 * kPi / s.blades;
-        on_rim *= std::cos(angle - part * (std::floor(angle / part) + 0.5)) / std::cos(part / 2);
-      }
-      const double weight = glm::clamp((radius - on_rim) / (step * side) + 0.5, 0.0, 1.0);
-      if (weight > 0) taps.push_back({static_cast<double>(i * step), static_cast<double>(j * step), weight});
-      sum += weight;
-    }
-  for (auto& tap : taps) tap.weight /= sum;
-  return of_taps(std::move(taps));
 }
 
 DoubleImage with_alpha_of(const DoubleImage& picture, DoubleImage image) {
@@ -142,34 +120,6 @@ DoubleImage directional_blur(const DoubleImage& source, double distance, double 
   const double spacing = distance / (n * m);
   const DoubleImage far = resample(source, source.size(), line(n, m * spacing, radians));
   return with_alpha_of(source, resample(far, source.size(), line(m, spacing, radians)));
-}
-
-DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& s) {
-  DoubleImage weighed = source;
-  for (auto& p : weighed.pixels) {
-    const double y = glm::min(luminance(Rgb(p)), 1.0), weight = 1 + s.highlights * y * y;
-    p = Rgba(Rgb(p) * weight, weight);
-  }
-  int factor = s.radius <= 4 ? 1 : s.radius <= 14 ? 2 : 4;
-  while (s.radius > 16 * factor) factor *= 2;
-  const Size small{(source.width + factor - 1) / factor, (source.height + factor - 1) / factor};
-  DoubleImage image = weighed;
-  if (factor > 1) {
-    Filter mean;
-    mean.x = mean_over(static_cast<double>(source.width) / small.width);
-    mean.y = mean_over(static_cast<double>(source.height) / small.height);
-    image = resample(image, small, mean);
-  }
-  const bool sparse = s.radius > 2 * factor;
-  const double means = (4 + (factor > 1 ? 1 : 0)) / 3.0 * factor * factor;  // what squares blur, as a disc's r²
-  const double radius = sparse ? std::sqrt(glm::max(s.radius * s.radius - means, 0.0)) : s.radius;
-  image = resample(image, small, iris(radius, s, sparse ? 2 : 1, factor));
-  if (sparse) image = resample(image, small, of_taps({{-.5, -.5, .25}, {.5, -.5, .25}, {-.5, .5, .25}, {.5, .5, .25}}));
-  if (factor > 1)
-    image = resample(image, source.size(),
-                     {.interpolation = factor > 2 ? Interpolation::cubic_bspline : Interpolation::linear});
-  for (auto& p : image.pixels) p = Rgba(Rgb(p) / p.a, 1);
-  return with_alpha_of(source, image);
 }
 
 }  // namespace afterglow::reference

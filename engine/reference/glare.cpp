@@ -12,10 +12,11 @@ namespace afterglow::reference {
 
 namespace {
 
-/// Half size, then what exceeds the threshold.
+/// What exceeds the threshold, at half the size.
 DoubleImage bright_half(const DoubleImage& source, double threshold) {
-  return map_color(resample(source, halved(source.size()), {}),
-                   [&](const Rgb& c) { return box_bloom_threshold(c, threshold, BoxBrightness::max); });
+  const auto bright =
+      map_color(source, [&](const Rgb& c) { return box_bloom_threshold(c, threshold, BoxBrightness::max); });
+  return resample(bright, halved(source.size()), {});
 }
 
 Words words_of(int i, int j, const LensDirt& s, std::uint32_t number) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/gtc/constants.hpp>
 
 #include "reference/resample.h"
@@ -144,11 +145,9 @@ DoubleImage glow_of(const DoubleImage& light, Size size, const std::vector<Rgb>&
   return resample(sum, size, bspline_filter());
 }
 
-DoubleImage halved_to(const DoubleImage& source, int most) {
-  DoubleImage image = source;
-  do image = resample(image, halved(image.size()), {});
-  while (image.height > most);
-  return image;
+Size ray_size(Size size, int lines) {
+  if (size.height <= 2 * lines) return halved(size);
+  return {glm::max(static_cast<int>(std::int64_t{size.width} * lines / size.height), 1), lines};
 }
 
 DoubleImage rays_of(const DoubleImage& image, int count, double angle, const Rgb& length) {
@@ -183,18 +182,18 @@ DoubleImage rays_of(const DoubleImage& image, int count, double angle, const Rgb
 }
 
 DoubleImage halation(const DoubleImage& source, const Halation& s) {
-  const DoubleImage light = glow_bright(glow_half(source), s.threshold, s.clamp);
+  const DoubleImage light = glow_half(glow_bright(source, s.threshold, s.clamp));
   const auto weights = exponential_weights(source.size(), s.radius * Rgb(1, 0.6, 0.4));
   return with_light(source, glow_of(light, source.size(), weights), s.intensity * s.color);
 }
 
 DoubleImage glare(const DoubleImage& source, const Glare& s) {
   if (s.kind == GlareKind::fog_glow) {
-    const DoubleImage light = glow_bright(glow_half(source), s.threshold, s.clamp);
+    const DoubleImage light = glow_half(glow_bright(source, s.threshold, s.clamp));
     const auto weights = fog_weights(source.size(), 0.5 * s.size * source.height);
     return with_light(source, glow_of(light, source.size(), weights), s.intensity * s.tint);
   }
-  const DoubleImage light = glow_bright(halved_to(source, 720), s.threshold, s.clamp);
+  const DoubleImage light = resized_to(glow_bright(source, s.threshold, s.clamp), ray_size(source.size(), 540));
   const int count = s.kind == GlareKind::star ? s.points : 2;
   const DoubleImage rays = rays_of(light, count, s.angle, ray_lengths(s.size * light.height, s.dispersion));
   return with_light(source, resample(rays, source.size(), bspline_filter()), s.intensity * s.tint);
@@ -218,11 +217,10 @@ DoubleImage iris_blur(const DoubleImage& image, double radius, int blades, doubl
 }
 
 DoubleImage lens_flare(const DoubleImage& source, const LensFlare& s) {
-  const DoubleImage bright = glow_bright(halved_to(source, 270), s.threshold, s.clamp);
+  const DoubleImage bright = resized_to(glow_bright(source, s.threshold, s.clamp), ray_size(source.size(), 270));
   DoubleImage sum(bright.size());
   if (s.ghosts > 0 || s.halo > 0) {
-    DoubleImage small = bright;
-    while (small.height > 135) small = resample(small, halved(small.size()), {});
+    const DoubleImage small = resized_to(bright, ray_size(source.size(), 135));
     const double radius = glm::max(s.iris * small.height, 0.5);
     sum = flare_ghosts(resample(iris_blur(small, radius, s.blades, s.rotation), bright.size(), bspline_filter()), s);
   }

@@ -21,8 +21,8 @@ DoubleImage glow_half(const DoubleImage& source);
 /// Σ weight · level, enlarged to `size`; `light` is level 1.
 DoubleImage glow_of(const DoubleImage& light, Size size, const std::vector<Rgb>& weights);
 
-/// `source` halved until it has at most `most` lines, once at least.
-DoubleImage halved_to(const DoubleImage& source, int most);
+/// Size of a picture for rays: so many lines; half of `size` where that has less than two for each.
+Size ray_size(Size size, int lines);
 /// `count` rays from each pixel; the first at `angle` degrees. `length`: where 1 % is left, pixels by channel.
 DoubleImage rays_of(const DoubleImage& image, int count, double angle, const Rgb& length);
 

@@ -23,17 +23,27 @@ Rgba cell_noise(int x, int y, const FilmGrain& s) {
   return {normal(w[0]), normal(w[1]), normal(w[2]), normal(pcg3d(w)[1])};
 }
 
-/// Bilinear between cells; the weights are scaled so that their squares add up to 1.
+/// The quadratic B-spline at a distance in cells.
+double spline(double d) {
+  d = std::abs(d);
+  return d < 0.5 ? 0.75 - d * d : d < 1.5 ? 0.5 * (1.5 - d) * (1.5 - d) : 0;
+}
+
+/// Quadratic B-splines of cells, which lie elsewhere in each frame; the weights are scaled so that their squares add
+/// up to 1.
 Rgba noise(int x, int y, const FilmGrain& s) {
-  const double px = (x + 0.5) / s.size - (s.size == 1 ? 0.5 : 0), py = (y + 0.5) / s.size - (s.size == 1 ? 0.5 : 0);
+  if (s.size == 1) return cell_noise(x, y, s);
+  const double side = s.size * std::sqrt(2.0 / 3);
+  const Words shift = pcg3d({s.frame, s.seed, 0x5eed});
+  const double px = (x + 0.5 + (shift[0] >> 24u) / 16.0) / side, py = (y + 0.5 + (shift[1] >> 24u) / 16.0) / side;
   const int cx = static_cast<int>(std::floor(px)), cy = static_cast<int>(std::floor(py));
-  const double wx[2] = {1 - (px - cx), px - cx}, wy[2] = {1 - (py - cy), py - cy};
   Rgba sum(0);
   double squares = 0;
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      sum += wx[i] * wy[j] * cell_noise(cx + i, cy + j, s);
-      squares += wx[i] * wy[j] * wx[i] * wy[j];
+  for (int j = cy - 1; j <= cy + 1; ++j)
+    for (int i = cx - 1; i <= cx + 1; ++i) {
+      const double weight = spline(px - i - 0.5) * spline(py - j - 0.5);
+      sum += weight * cell_noise(i, j, s);
+      squares += weight * weight;
     }
   return sum / std::sqrt(squares);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reference/resample.h"
 
+#include <cmath>
+
 namespace afterglow::reference {
 
 namespace {
@@ -34,6 +36,24 @@ DoubleImage resample(const DoubleImage& source, Size size, const Filter& filter)
     for (const auto& tap : taps) sum += tap.weight * sample(source, filter.interpolation, px + tap.dx, py + tap.dy);
     return sum;
   });
+}
+
+DoubleImage resized_to(DoubleImage image, Size size) {
+  for (Size half = halved(image.size()); half.width >= size.width && half.height >= size.height && half != image.size();
+       half = halved(half))
+    image = resample(image, half, {});
+  if (image.size() == size) return image;
+  const auto area = [](int from, int to) {
+    const double ratio = static_cast<double>(from) / to;
+    const int count = ratio > 1 ? static_cast<int>(std::ceil(2 * ratio)) : 1;
+    std::vector<Tap> taps;
+    for (int i = 0; i < count; ++i) taps.push_back({((i + 0.5) / count - 0.5) * ratio, 1.0 / count});
+    return taps;
+  };
+  Filter filter;
+  filter.x = area(image.width, size.width);
+  filter.y = area(image.height, size.height);
+  return resample(image, size, filter);
 }
 
 }  // namespace afterglow::reference

@@ -16,25 +16,6 @@ double in_window(int at, int n, double length, double offset) {
   return glm::clamp(glm::min(at + 1.0, from + length) - glm::max<double>(at, from), 0.0, 1.0);
 }
 
-/// The picture at another size: halved while that leaves enough, then the mean of reads at most half a texel apart.
-DoubleImage resized_to(DoubleImage image, Size size) {
-  for (Size half = halved(image.size()); half.width >= size.width && half.height >= size.height && half != image.size();
-       half = halved(half))
-    image = resample(image, half, {});
-  if (image.size() == size) return image;
-  const auto area = [](int from, int to) {
-    const double ratio = static_cast<double>(from) / to;
-    const int count = ratio > 1 ? static_cast<int>(std::ceil(2 * ratio)) : 1;
-    std::vector<Tap> taps;
-    for (int i = 0; i < count; ++i) taps.push_back({((i + 0.5) / count - 0.5) * ratio, 1.0 / count});
-    return taps;
-  };
-  Filter filter;
-  filter.x = area(image.width, size.width);
-  filter.y = area(image.height, size.height);
-  return resample(image, size, filter);
-}
-
 /// How much of pixel x lies in a stripe a third of a triad wide.
 double striped(int x, double triad, double from) {
   const auto covered = [&](double at) { return std::floor(at) / 3 + glm::min(at - std::floor(at), 1.0 / 3); };
@@ -98,7 +79,7 @@ DoubleImage crt(const DoubleImage& source, const Crt& s) {
   const DoubleImage signal = resized_to(source, {across, down});
   const DoubleImage spread =
       s.glow > 0 ? glow_of(glow_half(signal), signal.size(), fog_weights(signal.size(), 0.06 * down)) : signal;
-  const double dark = s.scan_lines * glm::clamp(static_cast<double>(source.height) / down - 1, 0.0, 1.0);
+  const double dark = s.scan_lines * glm::clamp(static_cast<double>(source.height) / down - 2, 0.0, 1.0);
   const double aspect = static_cast<double>(source.width) / source.height, bend = 0.25 * s.curvature;
   const double corner = glm::max(s.corner, 1e-4);
   const Tube tube{signal, s};
@@ -116,7 +97,8 @@ DoubleImage crt(const DoubleImage& source, const Crt& s) {
     for (int c = 0; shown > 0 && c < 3; ++c) {
       double light = tube.light(px, py, c, dark) * (1 - s.glow) + glm::clamp(around[c], 0.0, 1.0) * s.glow;
       const double stripe = striped(x, s.phosphor_size, c / 3.0);
-      light *= 1 + s.phosphor * (1 - glm::clamp(light, 0.0, 1.0)) * (3 * stripe - 1);
+      light *= 1 + s.phosphor * glm::clamp(s.phosphor_size - 2, 0.0, 1.0) * (1 - glm::clamp(light, 0.0, 1.0)) *
+                       (3 * stripe - 1);
       out[c] = light * s.brightness * (1 - lost) * shown;
     }
     return Rgba(glm::mix(Rgb(source.at(x, y)), Rgb(out), s.intensity), out.a);

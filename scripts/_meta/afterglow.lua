@@ -109,7 +109,7 @@
 ---@field softness? number|afterglow.Moving  Width of the beam's spot along a line. 0.2…4 lines, default 0.45
 ---@field scan_lines? number|afterglow.Moving  How dark it is between lines. 0: not. 0…1, default 0.85
 ---@field phosphor? number|afterglow.Moving  How much the stripes of phosphor show. 0: not. 0…1, default 0.35
----@field phosphor_size? number|afterglow.Moving  Width of three stripes, red, green and blue. 1…64 px, default 3
+---@field phosphor_size? number|afterglow.Moving  Width of three stripes, red, green and blue. Below 3 pixels of the result they fade, at 2 there are none. 1…64 px, default 3
 ---@field curvature? number|afterglow.Moving  How round the glass is. 0: flat. 0…1, default 0.3
 ---@field corner? number|afterglow.Moving  Radius of the picture's corners, as a share of its height. 0…0.5, default 0.04
 ---@field vignette? number|afterglow.Moving  Light lost in the corners. 0…1, default 0.3

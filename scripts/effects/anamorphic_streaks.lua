@@ -2,6 +2,7 @@
 -- Anamorphic streaks: the horizontal flares of an anamorphic lens. A pyramid that is halved across alone; on the way up each level takes a
 -- share of the coarser one (after K. Takahashi's Kino/Streak for Unity, whose settings and tint these are).
 local fx = require "afterglow"
+local glow = require "lib.glow"
 local pyramids = require "lib.pyramid"
 
 local kHalving = { x = { { -1.5, 1 / 8 }, { -0.5, 3 / 8 }, { 0.5, 3 / 8 }, { 1.5, 1 / 8 } } }
@@ -39,16 +40,13 @@ return fx.effect {
       width = width // 2
       sizes[#sizes + 1] = { width, height }
     end
-    local start, image = 1, nil
-    if g.length_scale == 1 then
-      image = g:filter { source = source, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
-    else
+    local start = 1
+    if g.length_scale ~= 1 then
       height = math.min(height, source.height)
       for _, size in ipairs(sizes) do size[2] = height end
       if g.length_scale < 1 then start = pyramids.start(sizes, source.width, height) end
-      image = pyramids.resized(g, source, sizes[start][1], height, "scaled")
     end
-    image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = false, name = "threshold" }
+    local image = glow.bright(g, source, sizes[start][1], height, s.threshold)
     local levels = { image }
     for i = start + 1, #sizes do
       image = g:filter { source = image, size = sizes[i], filter = kHalving, name = ("down[%d]"):format(#levels) }

@@ -1,7 +1,65 @@
 -- SPDX-License-Identifier: MIT
--- Bokeh blur: out of focus as through an iris, everywhere alike (`depth_of_field` looks at distance). Wide irises work on a smaller picture. There
--- every second texel of the iris is read across and down, and the mean of 2×2 pixels fills the gaps between them exactly. math.md §36.
+-- Bokeh blur: out of focus as through an iris, everywhere alike (`depth_of_field` looks at distance). Wide irises work on a smaller picture. math.md §36.
 local fx = require "afterglow"
+
+-- How an iris of at least `from` pixels is read: on a picture whose pixels are `side` pixels of the source wide, at every `step`th of them.
+-- An iris of `from` pixels is four of the smaller pixels wide or more, but for the narrowest: that many reads take as long as the picture is worth.
+local kWays = {
+  { from = 0, side = 1, step = 1 }, { from = 2.5, side = 1, step = 2 }, { from = 5, side = 2, step = 1 }, { from = 11, side = 3, step = 1 },
+  { from = 16, side = 4, step = 1 }, { from = 28, side = 6, step = 1 }, { from = 40, side = 8, step = 1 },
+}
+
+-- Mean square of a filter's offsets, whose weights sum up to 1.
+local function variance(taps)
+  local sum = 0
+  for _, tap in ipairs(taps) do sum = sum + tap[2] * tap[1] ^ 2 end
+  return sum
+end
+
+-- A tent of `side` texels to both sides at those next to it: a light that moves moves as far in the smaller picture.
+local function tent(side)
+  local taps = {}
+  for i = 1, 2 * side do
+    local at = i - side - 0.5
+    if side % 2 == 1 then at = at - 0.5 end  -- the middle of an odd number of texels is one
+    if math.abs(at) < side then taps[#taps + 1] = { at, (1 - math.abs(at) / side) / side } end
+  end
+  return taps
+end
+
+-- The same with one read for two texels, where the smaller picture's pixels cover whole ones.
+local function pairwise(taps)
+  local pairs_of = {}
+  for i = 1, #taps, 2 do
+    local first, second = taps[i], taps[i + 1] or { 0, 0 }
+    local weight = first[2] + second[2]
+    pairs_of[#pairs_of + 1] = { first[1] + second[2] / weight, weight }
+  end
+  return pairs_of
+end
+
+-- What the way blurs beside the iris, per axis in square pixels, but for the rim: the tent on the way down, the fill of texels that
+-- are not read, and the way up (bilinear: a tent, B-spline: twice as much).
+local function aside(way)
+  local side = way.side
+  if side == 1 then return way.step == 2 and 0.5 or 0 end
+  return variance(tent(side)) + side ^ 2 / (side > 2 and 3 or 6)
+end
+
+-- The way for a radius, and how wide the rim is that its texels' shares of the iris make, in pixels. It grows from that of one texel until all is as soft as the next way is: a moving radius shows no step.
+local function way_for(radius)
+  local n = 1
+  while kWays[n + 1] and radius >= kWays[n + 1].from do n = n + 1 end
+  local way, next_way = kWays[n], kWays[n + 1]
+  local spacing = way.side * way.step
+  local least = spacing ^ 2 / 12
+  local soft = aside(way) + least
+  if next_way then
+    local part = (radius ^ 2 - way.from ^ 2) / (next_way.from ^ 2 - way.from ^ 2)
+    soft = soft + part ^ 2 * (aside(next_way) + (next_way.side * next_way.step) ^ 2 / 12 - soft)
+  end
+  return way, math.sqrt(12 * (soft - aside(way))), soft
+end
 
 -- Radius of the smallest iris with `blades` straight sides (fewer than 3: round) that has the point on its rim.
 local function iris_radius(x, y, blades, turn)
@@ -14,13 +72,27 @@ local function iris_radius(x, y, blades, turn)
   return radius
 end
 
--- Every `step`th texel of an iris; the rim is as soft as steps are long. `side`: that of a texel, in pixels.
-local function iris(radius, blades, turn, step, side)
-  local spacing, taps, sum = step * side, {}, 0
-  local reach = math.ceil(radius / spacing + 0.5)
+-- Share of a square of `width` around the point that lies in the iris, by its sixteenths.
+local function share(x, y, width, radius, blades, turn)
+  local away = radius - iris_radius(x, y, blades, turn)
+  if math.abs(away) > width / (blades < 3 and 1 or math.cos(math.pi / blades)) then return away > 0 and 1 or 0 end
+  local part, sum = width / 4, 0
+  for j = -1.5, 1.5 do
+    for i = -1.5, 1.5 do
+      local rim = iris_radius(x + i * part, y + j * part, blades, turn)
+      sum = sum + math.min(math.max((radius - rim) / part + 0.5, 0), 1) / 16
+    end
+  end
+  return sum
+end
+
+-- The iris as reads of every `step`th texel. Lengths in texels; `rim`: width of the square whose share a texel's weight is.
+local function iris(radius, blades, turn, step, rim)
+  local taps, sum = {}, 0
+  local reach = math.ceil((radius + rim) / step)
   for j = -reach, reach do
     for i = -reach, reach do
-      local weight = math.min(math.max(radius / spacing - iris_radius(i, j, blades, turn) + 0.5, 0), 1)
+      local weight = share(i * step, j * step, rim, radius, blades, turn)
       if weight > 0 then
         taps[#taps + 1] = { i * step, j * step, weight }
         sum = sum + weight
@@ -31,13 +103,29 @@ local function iris(radius, blades, turn, step, side)
   return { taps = taps }
 end
 
--- Side of a pixel of the smaller picture for an iris of `radius` pixels.
-local function factor_for(radius)
-  if radius <= 4 then return 1 end
-  if radius <= 14 then return 2 end
-  local factor = 4
-  while radius > 16 * factor do factor = 2 * factor end
-  return factor
+-- The iris that blurs, together with `soft` square pixels an axis of other means (its own texels' among them), as much as one of `radius` pixels would alone: its mean
+-- square is corrected twice by what the reads make of it.
+local function compensated(radius, blades, turn, way, rim, soft)
+  local fullness = blades < 3 and 1 or (2 + math.cos(2 * math.pi / blades)) / 3  -- of a polygon, to that of the circle around it
+  local wanted = fullness * radius ^ 2 / 4 - aside(way)
+  local square, filter = radius ^ 2 - 4 * soft / fullness, nil
+  for i = 1, 3 do
+    square = math.max(square, radius ^ 2 / 4)
+    filter = iris(math.sqrt(square) / way.side, blades, turn, way.step, rim / way.side)
+    local made = 0
+    for _, tap in ipairs(filter.taps) do made = made + tap[3] * (tap[1] ^ 2 + tap[2] ^ 2) / 2 * way.side ^ 2 end
+    square = square + 4 * (wanted - made) / fullness
+  end
+  return filter
+end
+
+local function smaller(g, image, side)
+  local function axis(size)
+    local taps = tent(side)
+    return size % side == 0 and pairwise(taps) or taps
+  end
+  local size = { (image.width + side - 1) // side, (image.height + side - 1) // side }
+  return g:filter { source = image, size = size, filter = { interpolation = "linear", x = axis(image.width), y = axis(image.height) }, name = "small" }
 end
 
 return fx.effect {
@@ -64,20 +152,13 @@ return fx.effect {
     if s.highlights > 0 then
       image = g:pass { shader = "bokeh_blur/weigh", source = image, highlights = s.highlights, name = "weigh" }
     end
-    local factor = factor_for(s.radius)
-    local width, height = (source.width + factor - 1) // factor, (source.height + factor - 1) // factor
-    if factor > 1 then
-      image = g:filter { source = image, size = { width, height }, filter = fx.filters.area(source.width / width, source.height / height), name = "small" }
-    end
-    -- What the means blur by themselves is taken off: variances add up, r²/4 of a disc and 1/12 of a square's side squared.
-    local step = s.radius > 2 * factor and 2 or 1
-    local means = (step == 2 and 4 or 0) + (factor > 1 and 1 or 0)
-    local radius = math.sqrt(math.max(s.radius * s.radius - means / 3 * factor * factor, 0))
-    if step == 1 then radius = s.radius end
-    image = g:filter { source = image, filter = iris(radius, s.blades, s.rotation * math.pi / 180, step, factor), name = "iris" }
-    if step == 2 then image = g:filter { source = image, filter = fx.filters.box(0.5), name = "fill" } end
-    if factor > 1 then
-      local up = factor > 2 and fx.filters.bspline() or fx.filters.bilinear()
+    local way, rim, soft = way_for(s.radius)
+    local side = way.side
+    if side > 1 then image = smaller(g, image, side) end
+    image = g:filter { source = image, filter = compensated(s.radius, s.blades, s.rotation * math.pi / 180, way, rim, soft), name = "iris" }
+    if way.step == 2 then image = g:filter { source = image, filter = fx.filters.box(0.5), name = "fill" } end
+    if side > 1 then
+      local up = side > 2 and fx.filters.bspline() or fx.filters.bilinear()
       image = g:filter { source = image, size = source, filter = up, name = "up" }
     end
     if s.highlights > 0 then return g:pass { shader = "bokeh_blur/divide", source = image, picture = source, name = "final" } end

@@ -4,6 +4,7 @@
 -- (Quilez). What is seen through fog is also blurred by it, as light is scattered on its way: the farther, the more (the idea is OCASM's SSMS for Unity).
 local fx = require "afterglow"
 local glow = require "lib.glow"
+local pyramids = require "lib.pyramid"
 
 return fx.effect {
   name = "depth_fog",
@@ -49,7 +50,7 @@ return fx.effect {
     local length = math.sqrt(sun_x ^ 2 + sun_y ^ 2 + 1)
     local scattered = source
     if s.scattering > 0 or s.ambient > 0 then
-      scattered = glow.of(g, source, g.length_scale, glow.fog(source, g.length_scale, 0.5 * s.scattering_radius * source.height), function(image) return image end)
+      scattered = glow.of(g, source, g.length_scale, glow.fog(source, g.length_scale, 0.5 * s.scattering_radius * source.height), function(width, height) return pyramids.resized(g, source, width, height, "half") end)
     end
     local function held(x) return math.max(-1e30, math.min(x, 1e30)) end
     local view = { half * aspect, half }

@@ -18,8 +18,9 @@ return fx.effect {
   holds = { "black", error = { fp32 = function(_, source) return 1e-5 * math.max(1, source.width / 4096, source.height / 4096) end } },
   build = function(g, s, source)
     local size = math.max(1, s.size)  -- a preview cannot show finer grain
-    local coarse = math.floor(size * 64) / 64
+    local cell = size * math.sqrt(2 / 3)  -- B-splines are wider than their cells: as wide as tents over cells of that size
+    local coarse = math.floor(cell * 64) / 64
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
-                    size_of_grain = { coarse, size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1, grey = s.colored == 0 }
+                    size_of_grain = { coarse, cell - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1, grey = s.colored == 0 }
   end,
 }

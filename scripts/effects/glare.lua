@@ -5,7 +5,6 @@
 local fx = require "afterglow"
 local glow = require "lib.glow"
 local rays = require "lib.rays"
-local pyramids = require "lib.pyramid"
 
 local function strongest(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) end
 
@@ -42,11 +41,10 @@ return fx.effect {
   build = function(g, s, source)
     local light
     if s.kind == "fog_glow" then
-      light = glow.of(g, source, g.length_scale, glow.fog(source, g.length_scale, 0.5 * s.size * source.height), function(image) return glow.bright(g, image, s.threshold, s.clamp) end)
+      light = glow.of(g, source, g.length_scale, glow.fog(source, g.length_scale, 0.5 * s.size * source.height), function(width, height) return glow.bright(g, source, width, height, s.threshold, s.clamp) end)
     else
-      local width, height = rays.size(g, source, 720)
-      local image = pyramids.resized(g, source, width, height, "scaled")
-      image = glow.bright(g, image, s.threshold, s.clamp)
+      local width, height = rays.size(g, source, 540)
+      local image = glow.bright(g, source, width, height, s.threshold, s.clamp)
       local length = s.size * height
       local star = s.kind == "star"
       light = rays.of(g, image, star and s.points or 2, s.angle, { length * (1 + 0.5 * s.dispersion), length, length * (1 - 0.4 * s.dispersion) })

@@ -26,7 +26,7 @@ return fx.effect {
     return s.color[1] > 0 or s.color[2] > 0 or s.color[3] > 0, "color is black"
   end,
   idle = function(s) return { brightest = s.threshold * (1 - 1e-6) } end,
-  -- Light is averaged before the threshold is taken from it, which leaves as many digits less as it is high.
+  -- Taking the threshold from light leaves as many digits less as it is high.
   holds = {
     "black", "constant", mirror = { within = digits, when = is_bounded }, turn_180 = { within = digits, when = is_bounded }, turn_90 = { within = digits, when = is_bounded },
     continuous = function(s) return 1 + 1.1 * s.intensity * math.max(s.color[1], s.color[2], s.color[3]) end,
@@ -35,7 +35,7 @@ return fx.effect {
   },
   build = function(g, s, source)
     local weights = glow.exponential(source, g.length_scale, { s.radius, 0.6 * s.radius, 0.4 * s.radius })
-    local light = glow.of(g, source, g.length_scale, weights, function(image) return glow.bright(g, image, s.threshold, s.clamp) end)
+    local light = glow.of(g, source, g.length_scale, weights, function(width, height) return glow.bright(g, source, width, height, s.threshold, s.clamp) end)
     local tint = {}
     for i = 1, 3 do tint[i] = math.min(s.color[i] * s.intensity, 1e6) end
     return g:pass { shader = "glow/tint", source = light, picture = source, tint = tint, name = "final" }

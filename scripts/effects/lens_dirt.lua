@@ -3,6 +3,7 @@
 -- threshold; the dirt is made of smudges and of grains at random places instead of read from a picture. It is out of focus, and the light behind
 -- it wide: both are made at a quarter of the size.
 local fx = require "afterglow"
+local glow = require "lib.glow"
 local pyramids = require "lib.pyramid"
 
 return fx.effect {
@@ -29,14 +30,8 @@ return fx.effect {
     while math.min(sizes[#sizes][1], sizes[#sizes][2]) >= 16 do
       sizes[#sizes + 1] = { sizes[#sizes][1] // 2, sizes[#sizes][2] // 2 }
     end
-    local start, image = 1, nil
-    if g.length_scale == 1 then
-      image = g:filter { source = source, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
-    else
-      if g.length_scale < 1 then start = pyramids.start(sizes, source.width, source.height) end
-      image = pyramids.resized(g, source, sizes[start][1], sizes[start][2], "scaled")
-    end
-    image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = false, name = "threshold" }
+    local start = g.length_scale < 1 and pyramids.start(sizes, source.width, source.height) or 1
+    local image = glow.bright(g, source, sizes[start][1], sizes[start][2], s.threshold)
     for i = start + 1, #sizes do
       image = g:filter { source = image, size = sizes[i], filter = fx.filters.tent(), name = ("down[%d]"):format(i - 1) }
     end

@@ -44,8 +44,7 @@ return fx.effect {
   },
   build = function(g, s, source)
     local width, height = rays.size(g, source, 270)
-    local image = pyramids.resized(g, source, width, height, "scaled")
-    local bright = glow.bright(g, image, s.threshold, s.clamp)
+    local bright = glow.bright(g, source, width, height, s.threshold, s.clamp)
     local sum = nil
     if s.ghosts > 0 or s.halo > 0 then
       local across, down = rays.size(g, source, 135)

@@ -60,22 +60,17 @@ function glow.fog(source, scale, extent)
   return weights
 end
 
--- The glow of `source` at its size, `scale` of the whole image (g.length_scale of the picture). `bright(image)` makes of the picture at half its size the light that glows.
-function glow.of(g, source, scale, weights, bright)
+-- The glow at the size of `source`, which is `scale` of the whole image (g.length_scale of the picture). `light(width, height)` makes the light that glows at
+-- a size: half of the source's, or what a preview begins with.
+function glow.of(g, source, scale, weights, light)
   local width, height = whole(source, scale)
   local sizes = {}
   for i = 1, #weights do
     width, height = math.max(width // 2, 1), math.max(height // 2, 1)
     sizes[i] = { width, height }
   end
-  local start, image = 1, nil
-  if scale == 1 then
-    image = g:filter { source = source, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
-  else
-    if scale < 1 then start = pyramids.start(sizes, source.width, source.height) end
-    image = pyramids.resized(g, source, sizes[start][1], sizes[start][2], "scaled")
-  end
-  image = bright(image)
+  local start = scale < 1 and pyramids.start(sizes, source.width, source.height) or 1
+  local image = light(sizes[start][1], sizes[start][2])
   local levels = { [start] = image }
   for i = start + 1, #sizes do
     levels[i] = g:filter { source = levels[i - 1], size = sizes[i], filter = fx.filters.tent(), name = ("down[%d]"):format(i - 2) }
@@ -98,9 +93,14 @@ function glow.of(g, source, scale, weights, bright)
   return g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "glow" }
 end
 
--- What of an image is brighter than the threshold; no light counts for more than the limit.
-function glow.bright(g, image, threshold, limit)
-  return g:pass { shader = "glow/bright", source = image, threshold = threshold, limit = limit, name = "bright" }
+-- What of `source` is brighter than the threshold, at another size; no light counts for more than the limit (none: nil). It is taken of each pixel before any mean:
+-- a mean of a lamp and the night around it depends on where between pixels the lamp lies, and lamps that move would blink.
+function glow.bright(g, source, width, height, threshold, limit)
+  local across, down = math.max(source.width // 2, 1), math.max(source.height // 2, 1)
+  local halves = across >= width and down >= height and across + down < source.width + source.height
+  local image = g:pass { shader = halves and "glow/bright_half" or "glow/bright", source = source, size = halves and { across, down } or nil,
+                         reach = halves and 2 or nil, threshold = threshold, limit = limit or 1e30, name = "bright" }
+  return pyramids.resized(g, image, width, height, "scaled")
 end
 
 return glow

@@ -4,11 +4,15 @@
 -- GDC 2003). Beyond the picture there is no light.
 local rays = {}
 
--- A picture for rays: `source` halved until it has at most `most` lines, so that rays are as wide a part of the picture at any size; never enlarged.
-function rays.size(g, source, most)
+-- Size of a picture for rays: `lines` lines, so that rays are as wide and as bright a part of the picture at any size; half of what is delivered where that has less than two for each.
+function rays.size(g, source, lines)
   local pyramids = require "lib.pyramid"
   local width, height = pyramids.delivered(g, source)
-  repeat width, height = math.max(width // 2, 1), math.max(height // 2, 1) until height <= most
+  if height > 2 * lines then
+    width, height = math.max(width * lines // height, 1), lines
+  else
+    width, height = math.max(width // 2, 1), math.max(height // 2, 1)
+  end
   return math.min(width, source.width), math.min(height, source.height)
 end
 

@@ -81,7 +81,9 @@ TEST_F(Effects, DirectionalBlurIsAsLongAsItSays) {
 TEST_F(Effects, BokehBlurAgrees) {
   agree_everywhere({defocused({}), defocused({.radius = 3, .blades = 6, .rotation = 20, .highlights = 10}),
                     defocused({.radius = 40, .blades = 5}), defocused({.radius = 0.5, .highlights = 50}),
-                    defocused({.radius = 64, .blades = 3, .rotation = -80}), defocused({.radius = 13})});
+                    defocused({.radius = 64, .blades = 3, .rotation = -80}), defocused({.radius = 13}),
+                    defocused({.radius = 2.6, .blades = 8}), defocused({.radius = 20, .blades = 6, .rotation = 10}),
+                    defocused({.radius = 30})});
   expect_skipped("fx.bokeh_blur { radius = 0 }", "radius is 0");
 }
 
@@ -106,6 +108,43 @@ TEST_F(Effects, BokehOfAPointIsAnEvenDiscOfItsLight) {
     const double mean = inside / count;
     EXPECT_LT(std::sqrt(glm::max(squares / count - mean * mean, 0.0)), 0.06 * mean) << radius;
   }
+}
+
+/// Where the light is, from the middle of the picture, and how far spread: the root of the mean square of an axis.
+struct Spread {
+  double x = 0, y = 0, deviation = 0;
+};
+
+Spread spread_of_bokeh(double radius, int blades, int moved) {
+  Scene scene{"point", DoubleImage(240, 240), {}, {}};
+  scene.source.at(120 + moved, 120) = Rgba(1000, 1000, 1000, 1);
+  const auto made =
+      run_stack(fmt::format("fx.bokeh_blur {{ radius = {}, blades = {} }}", radius, blades), scene, Way::plain).result;
+  double sum = 0, x = 0, y = 0, squares = 0;
+  for (int j = 0; j < 240; ++j)
+    for (int i = 0; i < 240; ++i) {
+      const double v = made[4 * static_cast<std::size_t>(240 * j + i)];
+      sum += v, x += v * (i - 120), y += v * (j - 120), squares += v * ((i - 120) * (i - 120) + (j - 120) * (j - 120));
+    }
+  x /= sum, y /= sum;
+  return {x, y, std::sqrt((squares / sum - x * x - y * y) / 2)};
+}
+
+TEST_F(Effects, BokehIsAsWideAsItsIrisAtEveryRadius) {
+  for (const double radius : {3.9, 4.1, 4.95, 5.05, 10.9, 11.1, 13.9, 14.1, 15.9, 16.1, 27.9, 28.1, 39.9, 40.1})
+    for (const int blades : {0, 6}) {
+      const double ideal = blades == 0 ? radius / 2 : radius * std::sqrt(2.5 / 12);
+      EXPECT_NEAR(spread_of_bokeh(radius, blades, 0).deviation, ideal, 0.03 * ideal) << radius << ' ' << blades;
+    }
+}
+
+TEST_F(Effects, BokehMovesWithItsLight) {
+  for (const double radius : {4.0, 10.0, 14.0, 24.0, 30.0, 60.0})
+    for (const int moved : {0, 1, 2, 3, 5}) {
+      const Spread light = spread_of_bokeh(radius, 0, moved);
+      EXPECT_NEAR(light.x, moved, 0.02) << radius;
+      EXPECT_NEAR(light.y, 0, 0.02) << radius;
+    }
 }
 
 TEST_F(Effects, BlursKeepOneColour) {

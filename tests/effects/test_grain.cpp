@@ -61,6 +61,28 @@ TEST_F(Effects, FilmGrainHasMeanOneAndItsDeviationAtEverySize) {
   }
 }
 
+/// Mean difference of neighbours across, by column, over many frames.
+std::vector<double> sharpness_by_column(const char* entries, int frames) {
+  std::vector<double> sharpness(128);
+  for (int frame = 1; frame <= frames; ++frame) {
+    const auto pixels = grain_of(frame, entries);
+    for (std::size_t i = 0; i + 4 < pixels.size(); i += 4)
+      if (i / 4 % 128 != 127) sharpness[i / 4 % 128] += std::abs(pixels[i + 4] - pixels[i]);
+  }
+  sharpness.pop_back();
+  return sharpness;
+}
+
+TEST_F(Effects, FilmGrainHasNoLatticeThatStandsStill) {
+  for (const char* entries : {"fx.film_grain { intensity = 1, response = 0, size = 1.4 }",
+                              "fx.film_grain { intensity = 1, response = 0, size = 4 }"}) {
+    const auto sharpness = sharpness_by_column(entries, 48);
+    double mean = 0, squares = 0;
+    for (const double v : sharpness) mean += v / 127, squares += v * v / 127;
+    EXPECT_LT(std::sqrt(squares - mean * mean), 0.05 * mean) << entries;
+  }
+}
+
 TEST_F(Effects, ColouredGrainIsAlikeInAllChannels) {
   const Scene scene{"grey", DoubleImage(256, 256, Rgba(0.25, 0.25, 0.25, 1)), {}, {}};
   for (const double colored : {0.0, 0.3, 0.5, 1.0}) {

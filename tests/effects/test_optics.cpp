@@ -80,6 +80,42 @@ Scene lamp(Size size, double light) {
   return scene;
 }
 
+/// A round lamp of radius 1.5, as a camera sees it: pixels by the share that it covers.
+Scene small_lamp(Size size, double middle, double light) {
+  Scene scene{"small lamp", DoubleImage(size, Rgba(0, 0, 0, 1)), {}, {}};
+  constexpr int kParts = 8;
+  for (int y = 0; y < size.height * kParts; ++y)
+    for (int x = 0; x < size.width * kParts; ++x)
+      if (std::hypot((x + 0.5) / kParts - middle, (y + 0.5) / kParts - middle) < 1.5)
+        scene.source.at(x / kParts, y / kParts) += Rgba(Rgb(light / (kParts * kParts)), 0);
+  return scene;
+}
+
+TEST_F(Effects, LampsThatMoveDoNotBlink) {
+  // Some light of the picture's own threshold moves between pixels; what is left is that of the lamp's own rim.
+  for (const char* entries :
+       {"fx.halation { threshold = 1.5, clamp = 12 }", "fx.glare { threshold = 12 }",
+        "fx.glare { kind = 'fog_glow', threshold = 12 }", "fx.anamorphic_streaks { threshold = 8 }"}) {
+    double least = 1e30, most = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Scene scene = small_lamp({64, 64}, 31 + 0.25 * i, 20);
+      const auto made = run_stack(entries, scene, Way::plain).result;
+      double added = 0;
+      for (std::size_t p = 0; p < made.size(); p += 4) added += made[p];
+      added -= sum_of(scene.source, 0);
+      least = std::min(least, added), most = std::max(most, added);
+    }
+    EXPECT_GT(least, 0.5 * most) << entries;
+  }
+}
+
+TEST_F(Effects, RaysAreAsWideAndAsBrightAtEveryHeight) {
+  for (const int lines : {1080, 1440, 1442, 2160}) {
+    const Made made = run_stack("fx.glare { threshold = 0.5 }", random_scene({16, lines}, 9), Way::plain);
+    EXPECT_EQ(made.size_of("glare.ray[0][0]").height, 540) << lines;
+  }
+}
+
 TEST_F(Effects, HalationAgrees) {
   agree_everywhere({halated({.threshold = 0.3}),
                     halated({.intensity = 2, .radius = 60, .threshold = 0, .clamp = 5, .color = {0.2, 1, 3}}),
@@ -94,7 +130,7 @@ TEST_F(Effects, HalationPassByPass) {
     const auto scene = random_scene(size, 71);
     const Made made = run_stack("fx.halation { radius = 5, threshold = 0.5 }", scene, Way::plain);
     SCOPED_TRACE(scene.name);
-    const auto light = glow_bright(glow_half(scene.source), 0.5, 20);
+    const auto light = glow_half(glow_bright(scene.source, 0.5, 20));
     const auto weights = exponential_weights(size, 5.0 * Rgb(1, 0.6, 0.4));
     EXPECT_TRUE(agrees(made.pixels("halation.bright"), light, kFullFloat, kRgb));
     EXPECT_TRUE(agrees(made.pixels("halation.glow"), glow_of(light, size, weights), kFullFloat, kRgb));
@@ -223,6 +259,23 @@ TEST_F(Effects, CrtAgrees) {
                     tubed({.lines = 40, .scan_lines = 0, .phosphor = 0, .glow = 0, .brightness = 2, .intensity = 0.3})},
                    {.full = 3e-3, .fused = 1e-4, .half = 1, .spikes = false});
   expect_skipped("fx.crt { intensity = 0 }", "intensity is 0");
+}
+
+TEST_F(Effects, CrtHasNoMoireOnSmallPictures) {
+  // White at 480 lines of a look made for 1080: its stripes are 1.33 pixels wide, its lines 1.78 pixels apart.
+  const Scene scene{"white", DoubleImage(256, 480, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
+  const auto made = run_stack(
+                        "fx.crt { phosphor_size = 1.3333, phosphor = 1, scan_lines = 1, curvature = 0, corner = 0, "
+                        "vignette = 0, glow = 0 }",
+                        scene, Way::plain)
+                        .result;
+  float least = 1, most = 0;
+  for (int y = 40; y < 440; ++y)
+    for (int x = 40; x < 216; ++x) {
+      const float v = made[4 * static_cast<std::size_t>(256 * y + x)];
+      least = std::min(least, v), most = std::max(most, v);
+    }
+  EXPECT_LT(most - least, 0.01F);
 }
 
 TEST_F(Effects, CrtKeepsTheMeanLight) {
