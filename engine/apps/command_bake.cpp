@@ -8,6 +8,7 @@
 
 #include "apps/bake.h"
 #include "apps/command.h"
+#include "core/file_record.h"
 #include "core/text.h"
 #include "core/written_files.h"
 
@@ -38,7 +39,7 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
                  fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
                  a.preset.file, 0, "effects of colour, like those that `afterglow graph` shows as pixel passes"};
   const SideFile table{"-o", a.output, FileForm::any};
-  AFTERGLOW_CHECK(check_written({&table, 1}, {}, look.preset->files()));
+  AFTERGLOW_CHECK(check_written({&table, 1}, {}, looked_at(*look.preset->probes())));
   SessionOptions options;
   AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, ExecutionArguments{}.options());

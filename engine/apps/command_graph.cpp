@@ -11,6 +11,7 @@
 #include "apps/setting_text.h"
 #include "apps/traffic_view.h"
 #include "batch/crop.h"
+#include "core/file_record.h"
 #include "core/json_text.h"
 #include "core/written_files.h"
 
@@ -60,7 +61,7 @@ Result<void> check_output_of(const GraphArguments& arguments, const std::string&
                         : format == "svg" ? FileForm::svg
                                           : FileForm::any;
   const SideFile side{"-o", arguments.output, form};
-  return check_written({&side, 1}, {}, look.preset->files());
+  return check_written({&side, 1}, {}, looked_at(*look.preset->probes()));
 }
 
 Result<void> write_text(const GraphArguments& arguments, const std::string& text) {

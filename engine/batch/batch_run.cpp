@@ -11,6 +11,7 @@
 #include "batch/schedule.h"
 #include "batch/watch_run.h"
 #include "core/file.h"
+#include "core/file_record.h"
 #include "core/stopwatch.h"
 #include "core/temporary.h"
 #include "core/text.h"
@@ -143,7 +144,7 @@ Result<void> check_places(const BatchRun& run) {
     files.add(frame.job);
   }
   files.read.clear();
-  auto good = check_written(run.request, std::move(files), run.session->preset().files());
+  auto good = check_written(run.request, std::move(files), looked_at(*run.session->preset().probes()));
   run.report.replaces_nothing = static_cast<bool>(good);
   return good;
 }

@@ -165,6 +165,12 @@ FileRecord::Reading::~Reading() {
   if (record_) record_->add(path_, {Kind::content, content(path_), stamp_});
 }
 
+std::vector<fs::path> looked_at(const FileProbes& looks) {
+  std::vector<fs::path> paths;
+  for (const auto& [path, known] : looks) paths.push_back(path);
+  return paths;
+}
+
 std::vector<fs::path> paths_to_watch(const FileProbes& looks) {
   std::vector<fs::path> paths;
   for (const auto& [path, known] : looks) paths.push_back(known.kind == Kind::listing ? path / "" : path);

@@ -82,6 +82,9 @@ class FileRecord {
 /// A look of that kind, now.
 FileProbe inspect(const std::filesystem::path& path, FileProbe::Kind kind);
 
+/// All paths.
+std::vector<std::filesystem::path> looked_at(const FileProbes& looks);
+
 /// What Watcher::watch must be given to notice when looks come out differently.
 std::vector<std::filesystem::path> paths_to_watch(const FileProbes& looks);
 
