@@ -16,6 +16,7 @@
 #include "apps/play_settings.h"
 #include "apps/play_window.h"
 #include "core/file.h"
+#include "core/file_record.h"
 #include "core/stopwatch.h"
 #include "core/written_files.h"
 #include "image/writer.h"
@@ -52,7 +53,7 @@ Result<void> check_written_files(const PlayArguments& a, const PlayerOptions& op
 Result<void> write_screenshot(const PlayArguments& a, Player& player, Console& console) {
   AFTERGLOW_TRY(const Picture picture, player.screenshot());
   if (Stack* const stack = player.live().stack())
-    AFTERGLOW_CHECK(check_written_files(a, player.footage(), stack->preset().files()));
+    AFTERGLOW_CHECK(check_written_files(a, player.footage(), looked_at(*stack->preset().probes())));
   return write_picture(picture, a.screenshot, {}, console.diagnostics());
 }
 

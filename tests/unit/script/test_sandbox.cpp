@@ -262,7 +262,7 @@ TEST(Require, ModulesRunOnce) {
   auto preset = scene.load();
   ASSERT_TRUE(preset);
   std::vector<std::string> files;
-  for (const auto& file : preset->files()) files.push_back(scene.shorten(file.string()));
+  for (const auto& file : preset->scripts()) files.push_back(scene.shorten(file.string()));
   EXPECT_THAT(files, ElementsAre(AFTERGLOW_PROJECT_FOLDER "/scripts/afterglow.lua", "preset.lua", "lib/counter.lua"));
 }
 
