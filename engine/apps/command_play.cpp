@@ -32,28 +32,30 @@ Result<void> write_report(const PlayArguments& a, const std::string& text, bool&
 }
 
 /// What is written besides must be nothing that is played. `look`: files of the presets.
-Result<void> check_written_files(const PlayArguments& a, const Footage& footage,
+Result<void> check_written_files(const PlayArguments& a, const Footage* footage,
                                  std::vector<std::filesystem::path> look) {
   const std::array sides{SideFile{"--screenshot", a.screenshot, FileForm::any}, SideFile{"--report", a.report}};
-  for (int picture = 0; picture < footage.pictures(); ++picture)
-    if (picture == 0 || !footage.movie(picture) || footage.file(picture) != footage.file(picture - 1))
-      std::ranges::move(footage.files(picture), std::back_inserter(look));
+  for (int picture = 0; footage && picture < footage->pictures(); ++picture)
+    if (picture == 0 || !footage->movie(picture) || footage->file(picture) != footage->file(picture - 1))
+      std::ranges::move(footage->files(picture), std::back_inserter(look));
   return check_written(sides, {}, look);
 }
 
 /// Of presets that may still be broken: looks at the pictures anew, and only when something is to be written.
 Result<void> check_written_files(const PlayArguments& a, const PlayerOptions& options) {
   if (a.report.empty() && a.screenshot.empty()) return {};
-  Diagnostics quiet;  // they are told of when they are played
-  AFTERGLOW_TRY(const auto footage, Footage::open(options.footage, quiet));
-  return check_written_files(a, *footage, {options.preset, options.other_preset});
+  Diagnostics quiet;  // they are told of when they are played, and what is wrong with them
+  const auto footage = Footage::open(options.footage, quiet);
+  std::vector<std::filesystem::path> look{options.preset, options.other_preset};
+  if (!footage) look.insert(look.end(), options.footage.inputs.begin(), options.footage.inputs.end());
+  return check_written_files(a, footage ? footage->get() : nullptr, std::move(look));
 }
 
 /// By now the preset has said what it reads.
 Result<void> write_screenshot(const PlayArguments& a, Player& player, Console& console) {
   AFTERGLOW_TRY(const Picture picture, player.screenshot());
   if (Stack* const stack = player.live().stack())
-    AFTERGLOW_CHECK(check_written_files(a, player.footage(), looked_at(*stack->preset().probes())));
+    AFTERGLOW_CHECK(check_written_files(a, &player.footage(), looked_at(*stack->preset().probes())));
   return write_picture(picture, a.screenshot, {}, console.diagnostics());
 }
 

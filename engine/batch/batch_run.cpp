@@ -244,6 +244,8 @@ bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {
 Result<void> run_batch(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
   BatchRequest request = asked;
   BatchRun run{request, events, report};
+  AFTERGLOW_CHECK(check_written(request, {}, {}));  // a report of frames that cannot be listed is written, too
+  report.replaces_nothing = true;
   AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
   if (take_fps(request, run.list.jobs))
     events.note(fmt::format("{}: {} frames a second, as the first picture says", request.files.output,
@@ -256,8 +258,9 @@ Result<void> run_batch(const BatchRequest& asked, const RunEvents& events, RunRe
     report.frames.push_back({.job = job});
   }
   run.list.jobs.clear();
-  AFTERGLOW_CHECK(check_written(request, std::move(files), {}));
-  report.replaces_nothing = true;
+  auto good = check_written(request, std::move(files), {});
+  report.replaces_nothing = static_cast<bool>(good);
+  AFTERGLOW_CHECK(std::move(good));
   auto done = run_frames(run);
   if (done && !request.lock.empty()) done = write_file_atomically(request.lock, lock_text(*run.lock));
   if (run.session && run.session->ready()) report.session = run.session->report();
