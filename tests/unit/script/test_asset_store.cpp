@@ -87,7 +87,8 @@ TEST_F(AssetStores, WhatWasReadIsNotReadAgainWhereRecordsAreKept) {
 TEST_F(AssetStores, ConfigurationsAreKnownByAllThatDecides) {
   const auto configure = [&](const char* slope) {
     scene.write("studio.ocio",
-                std::string("ocio_profile_version: 2\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: "
+                std::string("ocio_profile_version: 2\nsearch_path: \".:$AFTERGLOW_TEST_SHOT\"\nroles: {default: "
+                            "lin_rec709, scene_linear: "
                             "lin_rec709}\nfile_rules: [!<Rule> {name: Default, colorspace: lin_rec709}]\n"
                             "displays: {Monitor: [!<View> {name: Film, colorspace: film}]}\n"
                             "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n  - !<ColorSpace>\n    name: film\n"
@@ -112,8 +113,10 @@ TEST_F(AssetStores, ConfigurationsAreKnownByAllThatDecides) {
   EXPECT_EQ(made(), 3u);
   setenv("AFTERGLOW_TEST_SHOT", "12", 1);
   EXPECT_EQ(made(), 4u) << "configurations read the environment";
+  setenv("AFTERGLOW_TEST_OTHER", "12", 1);  // not this one
   EXPECT_EQ(made(), 4u);
   unsetenv("AFTERGLOW_TEST_SHOT");
+  unsetenv("AFTERGLOW_TEST_OTHER");
 }
 
 }  // namespace
