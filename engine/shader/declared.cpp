@@ -38,16 +38,27 @@ void skip_sizes(Tokens tokens, std::size_t& at) {
   while (at < tokens.size() && tokens[at]->is("[")) at = after_closing(tokens, at);
 }
 
+/// Takes out names from the `first` on that stand among the tokens: they may get their value there.
+void remove_named(Tokens tokens, std::size_t first, std::vector<Unset>& out) {
+  const auto is_there = [&](const Unset& unset) {
+    return std::ranges::any_of(tokens, [&](const Token* token) { return token->is(unset.name); });
+  };
+  out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), is_there), out.end());
+}
+
 /// Adds the names without a value of `NAME [..], NAME = …, NAME;`, from the first name on. Returns the position behind
-/// the semicolon.
+/// the semicolon, where their marks will stand: those that a value of the same declaration reads or gives (`float y, x
+/// = f(y);`) are left out.
 std::size_t declarators(Tokens tokens, std::size_t at, std::vector<Unset>& out) {
   const std::size_t first = out.size();
   while (at < tokens.size() && tokens[at]->is_identifier()) {
     const Token& name = *tokens[at++];
     skip_sizes(tokens, at);
     if (at < tokens.size() && tokens[at]->is("=")) {
+      const std::size_t value = at;
       while (at < tokens.size() && !tokens[at]->is(",") && !tokens[at]->is(";"))
         at = opens(*tokens[at]) ? after_closing(tokens, at) : at + 1;
+      remove_named(tokens.subspan(value, at - value), first, out);
     } else {
       out.push_back({std::string(name.text), name.line});
     }
