@@ -6,6 +6,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <string_view>
 
 namespace chain {
 
@@ -40,6 +41,26 @@ inline bool take_link(const VkDeviceCreateInfo& info, PFN_vkGetInstanceProcAddr&
   below = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
   link->u.pLayerInfo = link->u.pLayerInfo->pNext;
   return true;
+}
+
+/// Whether a function is asked for, under its own name or that of the extension which it came from.
+inline bool is_named(std::string_view asked, std::string_view name) {
+  return asked == name || (asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == name);
+}
+
+/// What every layer answers for itself; null: another function.
+struct Entries {
+  PFN_vkCreateInstance create_instance;
+  PFN_vkCreateDevice create_device;
+  PFN_vkGetInstanceProcAddr get_instance;
+  PFN_vkGetDeviceProcAddr get_device;
+};
+inline PFN_vkVoidFunction entry_named(std::string_view asked, const Entries& of) {
+  if (asked == "vkCreateInstance") return reinterpret_cast<PFN_vkVoidFunction>(of.create_instance);
+  if (asked == "vkCreateDevice") return reinterpret_cast<PFN_vkVoidFunction>(of.create_device);
+  if (asked == "vkGetInstanceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(of.get_instance);
+  if (asked == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(of.get_device);
+  return nullptr;
 }
 
 /// The body of vkNegotiateLoaderLayerInterfaceVersion.

@@ -95,14 +95,10 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRendering(VkCommandBuffer commands, const VkR
 
 // The chain.
 
-bool is_called(std::string_view name, std::string_view call) {
-  return name == call || (name.ends_with("KHR") && name.substr(0, name.size() - 3) == call);
-}
-
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device(VkDevice device, const char* name) {
-  if (is_called(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
+  if (chain::is_named(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
 #define OWN(call) \
-  if (is_called(name, "vk" #call) && next.call) return reinterpret_cast<PFN_vkVoidFunction>(&call);
+  if (chain::is_named(name, "vk" #call) && next.call) return reinterpret_cast<PFN_vkVoidFunction>(&call);
   CALLS(OWN)
 #undef OWN
   return next.device(device, name);
@@ -131,10 +127,8 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance(VkInstance instance, const char* name) {
-  if (is_called(name, "vkGetInstanceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_instance);
-  if (is_called(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
-  if (is_called(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(&create_instance);
-  if (is_called(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(&create_device);
+  const chain::Entries entries{&create_instance, &create_device, &get_instance, &get_device};
+  if (const auto own = chain::entry_named(name, entries)) return own;
   return next.instance(instance, name);
 }
 

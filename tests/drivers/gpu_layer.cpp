@@ -390,11 +390,6 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysica
 
 // The layer itself.
 
-/// Functions that have become a part of Vulkan go by their old names too.
-bool is_named(std::string_view asked, std::string_view name) {
-  return asked == name || (asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == name);
-}
-
 /// Functions of later versions than the device has, as far as a program may be tempted.
 bool is_too_new(std::string_view name) {
   static const std::set<std::string_view> of_3{"vkCmdBeginRendering",   "vkCmdEndRendering",
@@ -431,9 +426,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShade
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device(VkDevice device, const char* name) {
   if (is_too_new(name)) return nullptr;
-  if (is_named(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
+  if (chain::is_named(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
 #define OWN(call) \
-  if (is_named(name, "vk" #call) && next.call) return reinterpret_cast<PFN_vkVoidFunction>(&call);
+  if (chain::is_named(name, "vk" #call) && next.call) return reinterpret_cast<PFN_vkVoidFunction>(&call);
   DEVICE_CALLS(OWN)
   return next.device(device, name);
 }
@@ -466,14 +461,12 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance(VkInstance instance, const char* name) {
-  if (is_named(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(&create_instance);
-  if (is_named(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(&create_device);
-  if (is_named(name, "vkGetInstanceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_instance);
-  if (is_named(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
+  const chain::Entries entries{&create_instance, &create_device, &get_instance, &get_device};
+  if (const auto own = chain::entry_named(name, entries)) return own;
   INSTANCE_CALLS(OWN)
 #undef OWN
 #define OWN(call) \
-  if (is_named(name, "vk" #call)) return reinterpret_cast<PFN_vkVoidFunction>(&call);
+  if (chain::is_named(name, "vk" #call)) return reinterpret_cast<PFN_vkVoidFunction>(&call);
   DEVICE_CALLS(OWN)
 #undef OWN
   return next.instance(instance, name);

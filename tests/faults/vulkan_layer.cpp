@@ -175,11 +175,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device(VkDevice device, const char*
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance(VkInstance instance, const char* name) {
-  const std::string_view wanted_name = name;
-  if (wanted_name == "vkCreateInstance") return reinterpret_cast<PFN_vkVoidFunction>(&create_instance);
-  if (wanted_name == "vkCreateDevice") return reinterpret_cast<PFN_vkVoidFunction>(&create_device);
-  if (wanted_name == "vkGetInstanceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(&get_instance);
-  if (wanted_name == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
+  const chain::Entries entries{&create_instance, &create_device, &get_instance, &get_device};
+  if (const auto entry = chain::entry_named(name, entries)) return entry;
   const auto load = [instance](const char* function) { return next_instance(instance, function); };
   const auto own = instance_call(name, load);
   return own ? own : load(name);
