@@ -9,6 +9,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/environment.h"
 #include "core/file.h"
 #include "core/temporary.h"
 #include "core/text.h"
@@ -31,11 +32,6 @@ std::string stamp_of(const fs::path& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) return {};
   return fmt::format("{} {}.{:09}", status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
-}
-
-std::string variable(const std::string& name) {
-  const char* value = std::getenv(name.c_str());
-  return value ? value : "";
 }
 
 /// What stands behind a word and a space; none: the line begins otherwise.
@@ -80,7 +76,7 @@ std::string FrameNotes::text(const Hash& inputs, const Dependencies& depends) {
 }
 
 fs::path FrameNotes::file_of(const std::string& name) const {
-  if (name == kOcioVariable) return variable("OCIO");
+  if (name == kOcioVariable) return environment("OCIO");
   if (name.starts_with(kInPath)) return path_.find_asset(name.substr(std::string_view(kInPath).size()));
   return names_.file_at(name);
 }
@@ -100,7 +96,7 @@ bool FrameNotes::is_same(const std::string& line, const FrameJob& job) {
   }
   if (const auto given = behind(line, "variable")) {
     const std::size_t equals = given->find('=');
-    return equals != std::string::npos && variable(given->substr(0, equals)) == given->substr(equals + 1);
+    return equals != std::string::npos && environment(given->substr(0, equals)) == given->substr(equals + 1);
   }
   return false;
 }

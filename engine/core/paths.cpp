@@ -12,6 +12,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/environment.h"
 #include "core/file.h"
 #include "core/file_record.h"
 #include "core/inside.h"
@@ -23,11 +24,6 @@
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value ? value : "";
-}
 
 bool is_preset_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 &&

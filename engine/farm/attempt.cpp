@@ -12,6 +12,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/environment.h"
 #include "core/file.h"
 #include "core/json_text.h"
 #include "core/parse_number.h"
@@ -26,11 +27,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kBegun = "begun";
 constexpr std::string_view kExit = "exit-";
-
-std::string variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value ? value : "";
-}
 
 /// Seconds since 1970.
 double seconds_now() {
@@ -66,7 +62,7 @@ Json begun_json(std::size_t chunk, int number) {
               {"try", number},
               {"node", node_name()},
               {"process", getpid()},
-              {"task", variable("SLURM_JOB_ID")},
+              {"task", environment("SLURM_JOB_ID")},
               {"temporaries", temporary_mark()},
               {"began", seconds_now()}};
 }
@@ -85,7 +81,7 @@ void clean_up_after(const Job& job, const AttemptFile& attempt) {
 }  // namespace
 
 std::string node_name() {
-  if (const auto name = variable("SLURMD_NODENAME"); !name.empty()) return name;
+  if (const auto name = environment("SLURMD_NODENAME"); !name.empty()) return name;
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/environment.h"
 #include "core/file.h"
 #include "core/file_record.h"
 #include "core/made_shaders.h"
@@ -98,16 +99,11 @@ std::string request_text(const OcioRequest& request) {
   return request.inverse ? text + ", inverse" : text;
 }
 
-std::string variable(const std::string& name) {
-  const char* value = std::getenv(name.c_str());
-  return value ? value : "";
-}
-
 Dependencies dependencies(const ChosenConfig& config, const std::string& text, const OcioSurvey& survey) {
   Dependencies out;
   out.files.emplace(config.file, config.name);
   for (const auto& table : survey.files) out.files.emplace(table.path, "");
-  for (const auto& name : ocio_variables(text)) out.environment.emplace(name, variable(name));
+  for (const auto& name : ocio_variables(text)) out.environment.emplace(name, environment(name));
   return out;
 }
 
@@ -161,13 +157,12 @@ const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::
   auto loaded = runtime.assets.store->get<LoadedOcio>(stored, look_of(runtime), [&] {
     auto made = ocio_shader(request);
     if (!made) throw ScriptError{std::move(made).error()};
-    std::string name = "ocio/" + hash_text(made->text).hex();
+    std::string shader = "ocio/" + hash_text(made->text).hex();
     std::shared_ptr<const ImageData> table;
     if (!made->table.empty()) table = make_data(made->size, std::move(made->table), config.file);
-    depends.generated[request_text(request)] =
-        Hasher().add(made->text).add(table ? table->hash.hex() : "").finish();
+    depends.generated[request_text(request)] = Hasher().add(made->text).add(table ? table->hash.hex() : "").finish();
     return std::make_shared<const LoadedOcio>(
-        LoadedOcio{std::move(name), std::move(made->text), std::move(table), config.file, std::move(depends)});
+        LoadedOcio{std::move(shader), std::move(made->text), std::move(table), config.file, std::move(depends)});
   });
   count_data(runtime, loaded->table.get());
   runtime.depends.add(loaded->depends);
