@@ -9,6 +9,7 @@
 
 #include "batch/crop.h"
 #include "core/file_time.h"
+#include "core/release_memory.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
 #include "image/scale.h"
@@ -359,6 +360,7 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
 Result<void> FrameLoop::finish_writing(std::size_t left) {
   while (writing_.size() > left) {
     auto [frame, written] = *writing_.take();
+    release_memory(frame->job.made_of);  // noted, and sequences are long
     if (!written && sink_.is_one()) return written;
     if (!written) {
       AFTERGLOW_CHECK(fail(*frame, std::move(written).error()));

@@ -13,6 +13,8 @@
 #include <unistd.h>
 #endif
 
+#include "core/release_memory.h"
+
 namespace afterglow {
 
 /// Advice about memory that has not been touched yet; nothing depends on it. What is smaller than a large page stays as
@@ -45,7 +47,7 @@ inline void use_small_pages() {
 template <class Value>
 void resize_for_picture(std::vector<Value>& values, std::size_t count) {
   if (values.capacity() < count) {
-    values = {};
+    release_memory(values);
     values.reserve(count);
     use_large_pages(values.data(), count * sizeof(Value));
   }

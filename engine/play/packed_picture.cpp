@@ -9,6 +9,7 @@
 
 #include "core/half.h"
 #include "core/parallel.h"
+#include "core/release_memory.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -41,7 +42,7 @@ PackedPixels::PackedPixels(Image& image) : values_(image.pixels.size()) {
   } else {
     floats_ = std::move(image.pixels);
   }
-  image.pixels = {};
+  release_memory(image.pixels);
 }
 
 bool PackedPixels::take_halves(const std::vector<float>& pixels) {
@@ -53,7 +54,7 @@ bool PackedPixels::take_halves(const std::vector<float>& pixels) {
     halves_from_floats(&pixels[at], count, &halves_[at]);
     floats_from_halves(&halves_[at], count, back.data());
     if (std::memcmp(back.data(), &pixels[at], count * sizeof(float)) != 0) {
-      halves_ = {};
+      release_memory(halves_);
       return false;
     }
   }
@@ -78,7 +79,7 @@ bool PackedPixels::take_codes(const std::vector<float>& pixels) {
       different |= std::bit_cast<std::uint32_t>(pixels[i + 3]) ^ opaque;
     }
     if (different != 0) {
-      codes_ = {};
+      release_memory(codes_);
       return false;
     }
   }
