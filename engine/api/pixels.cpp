@@ -12,6 +12,7 @@
 #include "api/call.h"
 #include "core/half.h"
 #include "gpu/image.h"
+#include "image/color_encoding.h"
 #include "image/encode.h"
 #include "image/picture.h"
 #include "image/reader.h"
@@ -104,6 +105,7 @@ void read_auxiliary(const Pixels& p, ImageRole role, int y, float* row, Mended& 
     std::fill_n(pixel, p.channels, role == ImageRole::depth ? kFarDepth : 0.0f);
     ++sum;
   }
+  flush_smallest(row, static_cast<std::size_t>(p.size.width) * static_cast<std::size_t>(p.channels));
   if (sum) mended += sum;
 }
 

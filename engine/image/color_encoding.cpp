@@ -254,4 +254,8 @@ void sanitize_normal(Image& normal, SanitizeCounts& counts) {
   }
 }
 
+void flush_smallest(float* values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) values[i] = std::abs(values[i]) < kSmallestColor ? 0.0f : values[i];
+}
+
 }  // namespace afterglow

@@ -19,7 +19,7 @@ namespace afterglow {
 /// Colours and alpha are held at ±this, where they are read and behind every pass: sums and products of a few of them
 /// stay finite.
 inline constexpr float kLargestColor = 1e30f;
-/// Colours below it are read as 0: devices may take denormal numbers for 0 in arithmetic, but not where they only copy.
+/// Colours, depths, normals and motion below it are read as 0: devices may take denormal numbers for 0 in arithmetic, but not where they only copy.
 inline constexpr float kSmallestColor = std::numeric_limits<float>::min();
 
 /// What had to be made finite before the stack (math.md §18).

@@ -254,6 +254,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     if (!extra.kind)
       for (float& value : image.pixels)
         if (!std::isfinite(value)) value = 0;
+    flush_smallest(image.pixels.data(), image.pixels.size());
     picture.auxiliary.emplace(extra.name, std::move(image));
   }
   if (policy == NanPolicy::fail && !picture.non_finite.empty()) return non_finite_error(picture, plan.file->path());

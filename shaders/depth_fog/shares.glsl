@@ -66,7 +66,7 @@ vec4 sample_at(ivec2 pixel) {
     for (int x = -1; x <= 1; ++x) {
       vec3 other = fetch(source, pixel + ivec2(x, y)).rgb;
       vec3 apart = (other - here) / max(max(largest(other), largest(here)), 1e-6);
-      float weight = exp2(-6.0 * dot(apart, apart));
+      float weight = exp2(-6.0 * max(dot(apart, apart), 1e-30));  // squares below the smallest float may be 0 or not: no matter
       sum += weight * hidden_at(distance_at(pixel + ivec2(x, y)), ray);
       weights += weight;
     }

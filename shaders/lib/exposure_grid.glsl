@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A cell of the grid over the picture.
+#include "lib/alpha.glsl"
 #include "lib/color.glsl"
 
 const float kMiddleGrey = 0.18;
 const float kDarkest = 2.7465820e-06;  // 0.18 · 2^-16: darker light is not told apart
 
-float exposure_value(vec3 light) { return log2(max(luminance(light), kDarkest) / kMiddleGrey); }
+float exposure_value(vec3 light) { return log2(clamp(luminance(light), kDarkest, kMaxLight) / kMiddleGrey); }
 
 // What a pixel says: its exposure value times how much it covers, and that. Where nothing is drawn (alpha 0) nothing is metered.
 vec2 metered(vec4 color) {
-  float covers = clamp(color.a, 0.0, 1.0);
+  float covers = color.a >= kLeastAlpha ? min(color.a, 1.0) : 0.0;
   return covers > 0.0 ? vec2(covers * exposure_value(color.rgb / covers), covers) : vec2(0.0);
 }
 

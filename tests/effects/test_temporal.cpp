@@ -82,6 +82,15 @@ TEST_F(Effects, AutoExposureMetersWhatIsDrawn) {
   EXPECT_EQ(TemporalPlayer("fx.auto_exposure {}").play(empty, 1)[0], 0);
 }
 
+TEST_F(Effects, AutoExposureMetersLightOfAlmostNoCoverage) {
+  DoubleImage scene = grey(0.72);
+  for (const float alpha : {1.2e-38f, 1e-45f}) {
+    scene.at(20, 10) = Rgba(1e5, 1e5, 1e5, alpha);  // divided by it, more than a float holds
+    for (const bool every_pass_alone : {false, true})
+      EXPECT_NEAR(TemporalPlayer("fx.auto_exposure {}", every_pass_alone).play(scene, 1)[0], 0.18, 1e-5) << alpha;
+  }
+}
+
 TEST_F(Effects, AutoExposureBringsGreyToMiddleGreyAtOnce) {
   TemporalPlayer player("fx.auto_exposure {}");
   EXPECT_NEAR(player.play(grey(1.44), 1)[0], 0.18, 1e-5);

@@ -135,6 +135,15 @@ TEST_F(Auxiliary, BackgroundAndNonFinite) {
   EXPECT_EQ(messages.warnings.size(), 1u);
 }
 
+TEST_F(Auxiliary, NumbersThatDevicesMayTakeForZeroAreZero) {
+  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "small.exr",
+                                    {make_spec(2, 1, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}, OIIO::TypeFloat)},
+                                    {{1, 1, 1, 1e-39f, 1e-45f, -1e-39f, 1, 1, 1, 1, 2e-38f, 0, -2e-38f, 1}}));
+  const auto picture = read_or_fail(folder_ / "small.exr", options_);
+  EXPECT_EQ(picture.auxiliary.at("depth").pixels, (std::vector<float>{0, 2e-38f}));
+  EXPECT_EQ(picture.auxiliary.at("normal").pixels, (std::vector<float>{0, 0, 1, 0, -2e-38f, 1}));
+}
+
 TEST_F(Auxiliary, LayerChoices) {
   const std::string file = (folder_ / "both.exr").string();
   EXPECT_EQ(parse_layer_choice(file).file, file);

@@ -1,0 +1,5 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.auto_exposure {},
+}
