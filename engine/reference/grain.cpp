@@ -16,11 +16,20 @@ double normal(std::uint32_t word) {
   return sum / std::sqrt(4 * 65535.0 / 12);
 }
 
-/// Red, grey, blue, green.
+/// lowbias32 (Wellons, 2018).
+std::uint32_t word_of(std::uint32_t x) {
+  x = (x ^ (x >> 16u)) * 0x7feb352du;
+  x = (x ^ (x >> 15u)) * 0x846ca68bu;
+  return x ^ (x >> 16u);
+}
+
+std::uint32_t key_of(const FilmGrain& s) { return word_of(word_of(s.seed) + s.frame); }
+
+/// Red, green, blue, grey.
 Rgba cell_noise(int x, int y, const FilmGrain& s) {
-  const Words w =
-      pcg3d({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y) + (s.seed << 16u), s.frame + s.seed});
-  return {normal(w[0]), normal(w[1]), normal(w[2]), normal(pcg3d(w)[1])};
+  const std::uint32_t row = word_of((key_of(s) & 0x7fffffffu) ^ static_cast<std::uint32_t>(y));
+  const std::uint32_t w = word_of(row + static_cast<std::uint32_t>(x) * 0x9e3779b9u);
+  return {normal(word_of(w + 1)), normal(word_of(w + 2)), normal(word_of(w + 3)), normal(w)};
 }
 
 /// The quadratic B-spline at a distance in cells.
@@ -34,8 +43,8 @@ double spline(double d) {
 Rgba noise(int x, int y, const FilmGrain& s) {
   if (s.size == 1) return cell_noise(x, y, s);
   const double side = s.size * std::sqrt(2.0 / 3);
-  const Words shift = pcg3d({s.frame, s.seed, 0x5eed});
-  const double px = (x + 0.5 + (shift[0] >> 24u) / 16.0) / side, py = (y + 0.5 + (shift[1] >> 24u) / 16.0) / side;
+  const std::uint32_t key = key_of(s);
+  const double px = (x + 0.5 + (key >> 24u) / 16.0) / side, py = (y + 0.5 + (key >> 16u & 255u) / 16.0) / side;
   const int cx = static_cast<int>(std::floor(px)), cy = static_cast<int>(std::floor(py));
   Rgba sum(0);
   double squares = 0;
@@ -66,7 +75,7 @@ Words pcg3d(Words v) {
 DoubleImage film_grain(const DoubleImage& source, const FilmGrain& s) {
   return generate(source.size(), [&](int x, int y) {
     const Rgba each = noise(x, y, s);
-    const Rgb grey(each.g), coloured(each.r, each.a, each.b);
+    const Rgb grey(each.a), coloured(each);
     const Rgb n = (grey + s.colored * (coloured - grey)) / std::hypot(s.colored, 1 - s.colored);
     const Rgba& p = source.at(x, y);
     const double dark = 1 - std::sqrt(glm::clamp(luminance(Rgb(p) / cover(p)), 0.0, 1.0));

@@ -3,6 +3,13 @@
 -- luminance as in Unity (HDRP and URP); the noise is computed instead of read from scans.
 local fx = require "afterglow"
 
+-- As shaders/lib/noise.glsl.
+local function word_of(x)
+  x = ((x ~ x >> 16) * 0x7feb352d) & 0xffffffff
+  x = ((x ~ x >> 15) * 0x846ca68b) & 0xffffffff
+  return x ~ x >> 16
+end
+
 return fx.effect {
   name = "film_grain",
   doc = "Grain of film: fine noise, new in each frame; best after tone mapping.",
@@ -20,7 +27,8 @@ return fx.effect {
     local size = math.max(1, s.size)  -- a preview cannot show finer grain
     local cell = size * math.sqrt(2 / 3)  -- B-splines are wider than their cells: as wide as tents over cells of that size
     local coarse = math.floor(cell * 64) / 64
+    local key = word_of(word_of(s.seed) + math.floor(g.frame) & 0xffffffff)
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
-                    size_of_grain = { coarse, cell - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1, grey = s.colored == 0 }
+                    size_of_grain = { coarse, cell - coarse }, colored = s.colored, key = key & 0x7fffffff, shift = { (key >> 24) / 16, (key >> 16 & 255) / 16 }, fine = size == 1, grey = s.colored == 0 }
   end,
 }
