@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "exec/cpu/driver.h"
+#include "exec/cpu/rows.h"
 #include "exec/few_channels.h"
 #include "exec/program_state.h"
 #include "gpu/error.h"
@@ -124,16 +125,16 @@ bool Program::State::can_be_linear() const {
   });
 }
 
-/// Whether rows of a sample shader share what they read is known once they are compiled.
+/// Whether rows that are but a wish pay is known once they are compiled.
 Result<void> Program::State::settle_rows(KernelCompiler& compiler, std::vector<KernelDesc>& descs) {
   std::vector<KernelDesc> tried;
   for (const auto& desc : descs)
-    if (desc.sample && desc.config.rows > 1) tried.push_back(desc);
+    if (rows_are_a_wish(desc)) tried.push_back(desc);
   if (tried.empty()) return {};
   AFTERGLOW_TRY(const CompiledKernels settled, compile_kernels(compiler, tried));
   std::size_t next = 0;
   for (auto& desc : descs)
-    if (desc.sample && desc.config.rows > 1 && !settled.unique[settled.index[next++]].shares_rows) desc.config.rows = 1;
+    if (rows_are_a_wish(desc) && !settled.unique[settled.index[next++]].rows_pay) desc.config.rows = 1;
   return {};
 }
 

@@ -120,12 +120,17 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   if (assembled.workgroup) {
     AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
   }
-  if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
+  if (desc.config.rows > 1) {
+    auto in_turns = interleave_rows(kernel.spirv, kTogether);
+    kernel.rows_pay = in_turns.has_value();
+    if (in_turns) kernel.spirv = std::move(*in_turns);
+  }
   if (desc.config.rows > 1 && desc.sample) {
     constexpr double kWorthwhile = 1.25;  // times fewer reads
     MergedRows merged = merge_equal(std::move(kernel.spirv));
     kernel.spirv = std::move(merged.spirv);
-    kernel.shares_rows = static_cast<double>(merged.reads_before) > kWorthwhile * static_cast<double>(merged.reads);
+    kernel.rows_pay =
+        !merged.loops && static_cast<double>(merged.reads_before) > kWorthwhile * static_cast<double>(merged.reads);
   }
   if (desc.config.defeat_uniform_inlining) kernel.spirv = defeat_uniform_inlining(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
@@ -188,7 +193,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc, Assembled
   std::erase_if(out.params, [](const KernelParam& param) { return param.offset == KernelParam::kUnread; });
   out.block_size = made->block_size;
   out.rows = desc.config.rows;
-  out.shares_rows = made->shares_rows;
+  out.rows_pay = made->rows_pay;
   out.workgroup = assembled.workgroup;
   if (out.workgroup) out.shared_bytes = shared_bytes(out.spirv);
   out.target = desc.target;

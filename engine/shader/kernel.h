@@ -171,9 +171,10 @@ struct CompiledKernel {
   std::vector<std::uint32_t> spirv;
   std::vector<AssembledKernel::ImageSlot> images;
   std::vector<KernelParam> params;
-  std::uint32_t block_size = 0;        ///< bytes of the uniform block; 0: none
-  int rows = 1;                        ///< that one invocation makes
-  bool shares_rows = false;            ///< of a sample shader: these read mostly the same texels, each once
+  std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
+  int rows = 1;                  ///< that one invocation makes
+  /// They take turns; those of a sample shader read mostly the same texels, each once. Else one row is as fast.
+  bool rows_pay = false;
   std::optional<Workgroup> workgroup;  ///< of a compute shader; the target is then the last of the images to bind
   std::uint64_t shared_bytes = 0;      ///< that a workgroup shares
   KernelTarget target = KernelTarget::float32;

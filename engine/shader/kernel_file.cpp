@@ -19,7 +19,7 @@ struct Header {
 struct Fixed {
   std::uint64_t text_high, text_low;
   std::uint32_t block_size, offsets, unset, loops, words;
-  std::uint32_t shares_rows;
+  std::uint32_t rows_pay;
 };
 
 /// Takes `count` words off the front, which are known to be there.
@@ -45,7 +45,7 @@ std::string encode(const KernelFile& kernel) {
                     static_cast<std::uint32_t>(kernel.unset.size()),
                     static_cast<std::uint32_t>(kernel.loops.size()),
                     static_cast<std::uint32_t>(kernel.spirv.size()),
-                    kernel.shares_rows ? 1u : 0u};
+                    kernel.rows_pay ? 1u : 0u};
   append(content, &fixed, sizeof fixed);
   append(content, kernel.offsets.data(), kernel.offsets.size() * sizeof(std::uint32_t));
   append(content, kernel.unset.data(), kernel.unset.size() * sizeof(std::uint32_t));
@@ -73,7 +73,7 @@ std::optional<KernelFile> decode(std::string_view bytes) {
     return std::nullopt;
   if (bytes.size() != (std::size_t{fixed.offsets} + fixed.unset + fixed.loops + fixed.words) * sizeof(std::uint32_t))
     return std::nullopt;
-  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, fixed.shares_rows != 0, {}, {}, {}, {}};
+  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, fixed.rows_pay != 0, {}, {}, {}, {}};
   kernel.offsets = take_words(bytes, fixed.offsets);
   kernel.unset = take_words(bytes, fixed.unset);
   kernel.loops = take_words(bytes, fixed.loops);

@@ -13,12 +13,12 @@
 namespace afterglow {
 
 /// Raise when the bytes change. What compiles is in the name of the file (KernelCompiler).
-inline constexpr std::uint32_t kKernelFileVersion = 10;
+inline constexpr std::uint32_t kKernelFileVersion = 11;
 
 struct KernelFile {
   Hash text;  ///< of the assembled GLSL it was made from
   std::uint32_t block_size = 0;
-  bool shares_rows = false;            ///< see CompiledKernel
+  bool rows_pay = false;               ///< see CompiledKernel
   std::vector<std::uint32_t> offsets;  ///< of the parameters, in the order of AssembledKernel::params
   std::vector<std::uint32_t> unset;    ///< numbers of the variables that may be read before they have a value
   std::vector<std::uint32_t>

@@ -38,8 +38,11 @@ Result<void> check_expansion(const ShaderSource& source, const ShaderScan& scann
   return check_macros(files);
 }
 
-bool has_loop(const std::vector<Token>& tokens) {
-  return std::ranges::any_of(tokens, [](const Token& t) { return t.is("for") || t.is("while") || t.is("do"); });
+void note_loops(const std::vector<Token>& tokens, ShaderSource& source) {
+  for (const Token& t : tokens) {
+    source.open_loops |= t.is("while") || t.is("do");
+    source.loops |= source.open_loops || t.is("for");
+  }
 }
 
 Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name,
@@ -57,11 +60,11 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   hasher.add(source->text);
   for (const auto& include : source->includes) hasher.add(include.text);
   source->hash = hasher.finish();
-  source->loops = has_loop(scanned.tokens);
+  note_loops(scanned.tokens, *source);
   source->keeps_state = scanned.keeps_state;
   for (const auto& include : source->includes) {
     AFTERGLOW_TRY(const ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
-    source->loops = source->loops || has_loop(library.tokens);
+    note_loops(library.tokens, *source);
     source->keeps_state = source->keeps_state || library.keeps_state;
     if (!library.shared.empty() && source->interface.kind != PassKind::compute)
       return shader_error(include.path.string(), library.shared.front().line,

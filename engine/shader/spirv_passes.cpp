@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "core/saturated.h"
+#include "shader/spirv_loops.h"
 
 namespace afterglow {
 namespace {
@@ -28,6 +30,58 @@ std::uint64_t inlined_calls(std::map<std::uint32_t, Calls>& functions, std::uint
     if (!functions[called].stays) calls.inlined = saturated_sum({calls.inlined, inner, 1});
   }
   return calls.inlined;
+}
+
+void be_quiet(spvtools::Optimizer& optimizer) {
+  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+}
+
+/// Instructions of each block, by label.
+std::map<std::uint32_t, std::uint64_t> block_sizes(const Module& module) {
+  std::map<std::uint32_t, std::uint64_t> out;
+  std::uint64_t* size = nullptr;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpLabel) size = &out[i.result];
+    if (i.op == spv::OpFunctionEnd) size = nullptr;
+    if (size) ++*size;
+  }
+  return out;
+}
+
+/// Loops of so many turns become straight code, as long as that adds no more than so many instructions: only the rows
+/// of straight code take turns and share what they read.
+constexpr std::uint64_t kMostTurns = 16, kMostMore = 1024;
+
+/// Asks for the loops that are to become straight code. False: there is none.
+bool mark_short_loops(Module& module) {
+  const std::vector<Loop> loops = find_loops(module);
+  const std::map<std::uint32_t, std::uint64_t> sizes = block_sizes(module);
+  std::vector<std::size_t> inner_first(loops.size());
+  std::iota(inner_first.begin(), inner_first.end(), std::size_t{0});
+  std::ranges::stable_sort(inner_first, {}, [&](std::size_t i) { return loops[i].blocks.size(); });
+  std::vector<std::uint64_t> added(loops.size());  // to each, by loops within it
+  std::vector<bool> stays(loops.size());           // for the sake of one within it
+  std::uint64_t more = 0;
+  bool any = false;
+  for (const std::size_t i : inner_first) {
+    const Loop& loop = loops[i];
+    std::uint64_t size = added[i];
+    for (const auto label : loop.blocks) size += sizes.at(label);
+    const std::uint64_t turns = loop.counting ? loop.counting->turns.value_or(0) : 0;
+    const bool is_short = turns > 0 && turns <= kMostTurns && !stays[i] && more + (turns - 1) * size <= kMostMore;
+    if (is_short) {
+      module.code[loop.head].words[3] |= spv::LoopControlUnrollMask;
+      more += (turns - 1) * size;
+      any = true;
+    }
+    if (loop.parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(loop.parent);
+    if (is_short)
+      added[parent] += (turns - 1) * size + added[i];
+    else
+      stays[parent] = true;
+  }
+  return any;
 }
 
 }  // namespace
@@ -62,7 +116,7 @@ bool inlines_quickly(const Module& module) {
 }
 
 void add_inlining_passes(spvtools::Optimizer& optimizer) {
-  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+  be_quiet(optimizer);
   optimizer.RegisterPass(spvtools::CreateInlineExhaustivePass())
       .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
       .RegisterPass(spvtools::CreatePrivateToLocalPass())
@@ -97,14 +151,21 @@ Result<Words> with_held_indices(const Words& spirv) {
 
 std::optional<Module> without_variables(const Module& module) {
   if (!inlines_quickly(module)) return std::nullopt;
+  spvtools::Optimizer inlining(kSpirvEnvironment);
+  add_inlining_passes(inlining);
+  inlining.RegisterPass(spvtools::CreateAggressiveDCEPass());
+  auto inlined = run_passes(inlining, module);
+  if (!inlined) return std::nullopt;
+  const bool short_loops = mark_short_loops(*inlined);
   spvtools::Optimizer optimizer(kSpirvEnvironment);
-  add_inlining_passes(optimizer);
-  optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
-      .RegisterPass(spvtools::CreateSSARewritePass())
-      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+  be_quiet(optimizer);
+  optimizer.RegisterPass(spvtools::CreateSSARewritePass());
+  // Constants are not folded here: exp2(-1) of this machine may be other bits than the device's.
+  if (short_loops) optimizer.RegisterPass(spvtools::CreateLoopUnrollPass(true));
+  optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateBlockMergePass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
-  return run_passes(optimizer, module);
+  return run_passes(optimizer, *inlined);
 }
 
 }  // namespace afterglow

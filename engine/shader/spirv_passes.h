@@ -36,7 +36,8 @@ std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Mod
 /// memory that workgroups share lies within the process. Errors: other (no module of GLSL's memory model).
 Result<Words> with_held_indices(const Words& spirv);
 
-/// Values in place of functions, their arguments and variables, and blocks without those that are never entered.
+/// Values in place of functions, their arguments and variables, straight code in place of loops of a few turns, and
+/// blocks without those that are never entered.
 /// Nothing when that would take too long, or a pass fails.
 std::optional<Module> without_variables(const Module& module);
 

@@ -34,7 +34,7 @@ void steps(const Words& spirv, const std::vector<AssembledKernel::UnsetVariable>
   const std::vector<std::function<Words(const Words&)>> all{
       [](const Words& in) { return guard_loops(in, 17).spirv; },
       [&unset](const Words& in) { return give_values(in, unset).spirv; },
-      [](const Words& in) { return interleave_rows(in, 4); },
+      [](const Words& in) { return interleave_rows(in, 4).value_or(in); },
       [](const Words& in) { return merge_equal(in).spirv; },
       [](const Words& in) { return defeat_uniform_inlining(in); },
       [](const Words& in) {

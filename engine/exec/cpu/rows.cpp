@@ -6,7 +6,7 @@
 namespace afterglow {
 namespace {
 
-bool can_be_in_turns(const KernelStage& stage) { return !stage.shader->loops && !stage.shader->keeps_state; }
+bool may_take_turns(const KernelStage& stage) { return !stage.shader->open_loops && !stage.shader->keeps_state; }
 
 }  // namespace
 
@@ -17,15 +17,15 @@ int rows_that_pay(const KernelDesc& kernel, int wanted) {
   constexpr double kMostReach = 4;     // of a sample shader: beyond, rows share less and less
   constexpr int kMostOfSamples = 4;    // rows of one: more read so many lines that they push each other out of a cache
   if (kernel.config.hardware_filter) return 1;
-  // Loops cannot be taken in turns: it would be so many times as much to compile for nothing.
+  // Loops that do not count cannot be taken in turns: it would be so many times as much to compile for nothing.
   // Variables of file scope would go from row to row with what the row before left in them.
   for (const auto& stage : kernel.stages)
-    if (!can_be_in_turns(stage)) return 1;
+    if (!may_take_turns(stage)) return 1;
   if (kernel.sample) {
     const ShaderInterface& shader = kernel.sample->shader->interface;
     const bool may_share =
         !shader.done && !shader.workgroup && kernel.sample->reach.value_or(kMostReach + 1) <= kMostReach;
-    return may_share && can_be_in_turns(*kernel.sample) ? std::min(wanted, kMostOfSamples) : 1;
+    return may_share && may_take_turns(*kernel.sample) ? std::min(wanted, kMostOfSamples) : 1;
   }
   if (!kernel.filter) return wanted;
   for (int rows = wanted; rows > 1; rows /= 2) {
@@ -34,6 +34,11 @@ int rows_that_pay(const KernelDesc& kernel, int wanted) {
       return rows;
   }
   return 1;
+}
+
+bool rows_are_a_wish(const KernelDesc& kernel) {
+  const auto loops = [](const KernelStage& stage) { return stage.shader->loops; };
+  return kernel.config.rows > 1 && (kernel.sample || std::ranges::any_of(kernel.stages, loops));
 }
 
 }  // namespace afterglow

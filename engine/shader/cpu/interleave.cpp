@@ -73,6 +73,16 @@ std::optional<Body> body_of(const Module& module, Range range) {
   return body;
 }
 
+/// Whether what the row function calls, as functions with several returns are, still loops.
+bool loops(const Module& module, std::uint32_t main) {
+  std::uint32_t function = 0;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpFunction) function = i.result;
+    if (i.op == spv::OpLoopMerge && function != main) return true;
+  }
+  return false;
+}
+
 /// Rewrites main() around the calls.
 class Interleaver {
  public:
@@ -170,18 +180,18 @@ class Interleaver {
 
 }  // namespace
 
-std::vector<std::uint32_t> interleave_rows(const std::vector<std::uint32_t>& spirv, int together) {
+std::optional<Words> interleave_rows(const std::vector<std::uint32_t>& spirv, int together) {
   auto module = parse(spirv);
-  if (!module) return spirv;
+  if (!module) return std::nullopt;
   const std::uint32_t function = function_named(*module, kRowFunction), main = entry_point(*module);
-  if (function == 0 || main == 0) return spirv;
+  if (function == 0 || main == 0) return std::nullopt;
   module = flatten(std::move(*module), function);
-  if (!module) return spirv;
+  if (!module) return std::nullopt;
   declare_bool_vectors(*module);
   Range range = range_of(*module, function);
   range.end = select_instead_of_branching(*module, range.begin, range.end);
   auto body = body_of(*module, range);
-  if (!body) return spirv;
+  if (!body || loops(*module, main)) return std::nullopt;
   Interleaver(*module, function, std::move(*body), static_cast<std::size_t>(together)).run(range_of(*module, main));
   // The row function itself is of no use any more, nor is what was only written for it.
   spvtools::Optimizer optimizer(kSpirvEnvironment);
@@ -189,7 +199,8 @@ std::vector<std::uint32_t> interleave_rows(const std::vector<std::uint32_t>& spi
   optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
   const Words before = module->join();
   Words after;
-  return optimizer.Run(before.data(), before.size(), &after) ? after : spirv;
+  if (!optimizer.Run(before.data(), before.size(), &after)) return std::nullopt;
+  return after;
 }
 
 }  // namespace afterglow

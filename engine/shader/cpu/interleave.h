@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace afterglow {
 inline constexpr std::string_view kRowFunction = "ag_stages";
 
 /// Replaces main()'s calls of kRowFunction, `together` at a time, by its instructions in turns. Results are the same
-/// bits. A function that branches, or a module that is not as expected, is left as it is.
-std::vector<std::uint32_t> interleave_rows(const std::vector<std::uint32_t>& spirv, int together);
+/// bits. Nothing where the function branches, or loops more than a few times, or a module is not as expected.
+std::optional<std::vector<std::uint32_t>> interleave_rows(const std::vector<std::uint32_t>& spirv, int together);
 
 }  // namespace afterglow

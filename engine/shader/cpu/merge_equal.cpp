@@ -57,6 +57,7 @@ class Merger {
     code.insert(code.end(), constants_made_.begin(), constants_made_.end());
     code.insert(code.end(), body_.begin(), body_.end());
     module_.code = std::move(code);
+    counts.loops = std::ranges::find(module_.code, spv::OpLoopMerge, &Instruction::op) != module_.code.end();
     counts.reads = static_cast<std::size_t>(
         std::ranges::count_if(module_.code, [](const Instruction& i) { return reads_image(i.op); }));
   }

@@ -11,6 +11,7 @@ namespace afterglow {
 struct MergedRows {
   std::vector<std::uint32_t> spirv;
   std::size_t reads_before = 0, reads = 0;  ///< texels that stand in the text
+  bool loops = false;                       ///< some are left
 };
 
 /// Within each block of each function: equal steps on equal values become one; so do reads of an image that nothing

@@ -91,7 +91,7 @@ TEST_P(SharedRows, EachHasTheBitsThatItHasAlone) {
       EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(kernel->spirv)) << rows;
       EXPECT_EQ(runner().run(*kernel, images, size, block).rgba, expected.rgba) << rows << " rows, " << size.width;
       if (rows != 8) continue;
-      EXPECT_EQ(kernel->shares_rows, tried.shares);
+      EXPECT_EQ(kernel->rows_pay, tried.shares);
       EXPECT_EQ(reads_of(*kernel), tried.reads);
     }
   }
