@@ -12,7 +12,6 @@
 #include "api/call.h"
 #include "core/half.h"
 #include "gpu/image.h"
-#include "image/color_encoding.h"
 #include "image/encode.h"
 #include "image/picture.h"
 #include "image/reader.h"

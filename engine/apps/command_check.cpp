@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <system_error>
 
 #include "apps/command.h"
 #include "apps/look.h"
@@ -91,7 +93,9 @@ std::vector<std::string> shadow_notes(const Look& look) {
       if (!seen.insert("shader " + name).second) continue;
       const auto files = look.shaders->path().find_shader(name + ".glsl");
       for (std::size_t i = 1; i < files.size(); ++i)
-        notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
+        if (std::error_code none;
+            !std::filesystem::equivalent(files[0], files[i], none))  // a folder may be there twice
+          notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
     }
   return notes;
 }

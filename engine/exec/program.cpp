@@ -12,7 +12,11 @@
 namespace afterglow {
 
 Program::Program(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Program::~Program() = default;
+Program::~Program() {
+  const Device& device = state_->device;
+  state_.reset();
+  device.free_destroyed();
+}
 
 Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler,
                                                  const Graph& graph, const ProgramOptions& options) {

@@ -193,6 +193,13 @@ Result<void> Device::finish() {
   return {};
 }
 
+void Device::free_destroyed() const {
+  if (!owned_ || !is_cpu()) return;
+  const VkSubmitInfo2 nothing{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  const auto lock = lock_queue();
+  (void)functions_.vkQueueSubmit2(queue_, 1, &nothing, VK_NULL_HANDLE);  // a lost device is found elsewhere
+}
+
 Device::~Device() {
   if (pipeline_cache_ != VK_NULL_HANDLE) functions_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
   if (!owned_) return;

@@ -102,6 +102,9 @@ class Device {
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
   std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
+  /// After pipelines have been destroyed. lavapipe frees those that have run with a later submission: without one, a
+  /// host that runs many looks once each would keep them all. An adopted device's queue is left to the caller.
+  void free_destroyed() const;
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }

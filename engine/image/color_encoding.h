@@ -52,7 +52,5 @@ std::function<void(int begin, int end)> decoder_of_rows(const ColorEncoding& enc
 
 void sanitize_depth(Image& depth, SanitizeCounts& counts);
 void sanitize_normal(Image& normal, SanitizeCounts& counts);
-/// Values of depth, normals, motion and the like below kSmallestColor become 0, as those of colours do.
-void flush_smallest(float* values, std::size_t count);
 
 }  // namespace afterglow

@@ -65,6 +65,8 @@ struct Picture {
 
 /// Makes RGBA of scene-linear light finite and its colours ≥ 0, as `SanitizeCounts` says, and counts that.
 void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts);
+/// Values of depth, normals, motion and the like below kSmallestColor become 0, as those of colours do.
+void flush_smallest(float* values, std::size_t count);
 
 /// Makes floats of colours that are half floats, in `memory` where that has room; leaves others as they are.
 void open_color(Picture& picture, std::vector<float> memory = {});

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "core/text.h"
+#include "shader/foreign_words.h"
 #include "shader/kernel.h"
 #include "shader/rename.h"
 #include "shader/token.h"
@@ -55,6 +56,11 @@ std::optional<LogLine> parse_line(std::string_view text) {
   if (message.starts_with("'' : ")) message.erase(0, 5);
   if (const auto colon = message.find("' : "); colon != std::string::npos) message.replace(colon, 4, "': ");
   out.message = shortened(trim(message));
+  if (out.message.ends_with('.')) out.message.pop_back();  // "'half': Reserved word."
+  const auto quote = out.message.find('\'', 1);
+  if (!out.message.starts_with('\'') || quote == std::string::npos) return out;
+  if (const auto instead = in_glsl(out.message.substr(1, quote - 1)); !instead.empty())
+    out.message += fmt::format("; write {}", instead);
   return out;
 }
 

@@ -15,6 +15,7 @@
 #include "shader/builtins.h"
 #include "shader/directives.h"
 #include "shader/entry_point.h"
+#include "shader/foreign_words.h"
 #include "shader/workgroup.h"
 
 namespace afterglow {
@@ -49,6 +50,8 @@ class ShaderScanner {
       if (token.is("discard"))
         return fail(token,
                     "'discard' is not allowed: every pixel of an image gets a value; return the colour that came in");
+      if (const auto why = why_not(token.text); token.is_identifier() && !why.empty())
+        return fail(token, fmt::format("'{}' is not allowed: {}", token.text, why));
       if (token.directive < 0) code_.push_back(&token);
     }
     AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));

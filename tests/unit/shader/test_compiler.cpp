@@ -292,6 +292,20 @@ TEST(KernelCompiler, EveryErrorOfAShaderIsToldOnce) {
   EXPECT_THAT(places(fused.error()), all) << "the same stage behind itself";
 }
 
+TEST(KernelCompiler, WordsOfOtherLanguagesAreTranslated) {
+  ShaderFiles files;
+  KernelCompiler compiler{fs::path()};
+  const auto message = [&](const std::string& body) {
+    const auto made = compiler.compile(one(files.stage("t/foreign", "vec4 apply(vec4 color) { " + body + " }\n")));
+    return made.ok() ? std::string() : made.error().message;
+  };
+  EXPECT_EQ(message("float3 c = color.rgb; return color;"), "'float3': undeclared identifier; write vec3");
+  EXPECT_EQ(message("return saturate(color);"),
+            "'saturate': no matching overloaded function found; write clamp(x, 0.0, 1.0)");
+  EXPECT_EQ(message("half x = 0.5; return color * x;"), "'half': Reserved word; write float");
+  EXPECT_EQ(message("return lost(color);"), "'lost': no matching overloaded function found");
+}
+
 TEST(KernelCompiler, EightThreadsShareOneCompiler) {
   ShaderFiles files;
   constexpr int kThreads = 8, kShaders = 6;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "shader/foreign_words.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace afterglow {
+namespace {
+
+using Foreign = std::pair<std::string_view, std::string_view>;
+
+constexpr std::array kForeign{
+    Foreign{"float2", "vec2"},
+    Foreign{"float3", "vec3"},
+    Foreign{"float4", "vec4"},
+    Foreign{"half", "float"},
+    Foreign{"half2", "vec2"},
+    Foreign{"half3", "vec3"},
+    Foreign{"half4", "vec4"},
+    Foreign{"fixed", "float"},
+    Foreign{"fixed3", "vec3"},
+    Foreign{"fixed4", "vec4"},
+    Foreign{"int2", "ivec2"},
+    Foreign{"int3", "ivec3"},
+    Foreign{"int4", "ivec4"},
+    Foreign{"uint2", "uvec2"},
+    Foreign{"uint3", "uvec3"},
+    Foreign{"uint4", "uvec4"},
+    Foreign{"bool2", "bvec2"},
+    Foreign{"bool3", "bvec3"},
+    Foreign{"bool4", "bvec4"},
+    Foreign{"float2x2", "mat2"},
+    Foreign{"float3x3", "mat3"},
+    Foreign{"float4x4", "mat4"},
+    Foreign{"lerp", "mix(a, b, t)"},
+    Foreign{"saturate", "clamp(x, 0.0, 1.0)"},
+    Foreign{"frac", "fract"},
+    Foreign{"fmod", "mod"},
+    Foreign{"atan2", "atan(y, x)"},
+    Foreign{"rsqrt", "inversesqrt"},
+    Foreign{"mad", "fma"},
+    Foreign{"mul", "m * v"},
+    Foreign{"rcp", "1.0 / x"},
+    Foreign{"log10", "log2(x) * 0.30103"},
+    Foreign{"sincos", "sin and cos"},
+    Foreign{"asfloat", "uintBitsToFloat"},
+    Foreign{"asuint", "floatBitsToUint"},
+    Foreign{"asint", "floatBitsToInt"},
+    Foreign{"countbits", "bitCount"},
+    Foreign{"tex2D", "fetch_linear(image, position in texels)"},
+    Foreign{"texture2D", "fetch_linear(image, position in texels)"},
+    Foreign{"Sample", "fetch_linear(image, position in texels)"},
+    Foreign{"SampleLevel", "fetch_linear(image, position in texels)"},
+    Foreign{"Texture2D", "uniform sampler2D"},
+    Foreign{"static", "const"},
+    Foreign{"constexpr", "const"},
+};
+
+/// What workgroups are told, and how much a device takes.
+constexpr std::array<std::string_view, 4> kOfWorkgroups{"gl_LocalInvocationID", "gl_LocalInvocationIndex",
+                                                        "gl_WorkGroupID", "gl_WorkGroupSize"};
+
+}  // namespace
+
+std::string_view in_glsl(std::string_view word) {
+  const auto found = std::ranges::find(kForeign, word, &Foreign::first);
+  return found == kForeign.end() ? std::string_view() : found->second;
+}
+
+std::string_view why_not(std::string_view name) {
+  if (name == "gl_FragCoord")
+    return "one invocation may make several pixels; `ivec2 pixel` is the argument of apply, sample_at and compute_at "
+           "that says where";
+  if (name.starts_with("gl_Max") || name.starts_with("gl_Min") || std::ranges::count(kOfWorkgroups, name) > 0)
+    return {};
+  if (name.starts_with("gl_")) return "what is drawn, and how, is the engine's affair";
+  if (name.starts_with("dFd") || name.starts_with("fwidth"))
+    return "pixels that lie beside each other need not be made beside each other; read both by `fetch` in a sample "
+           "shader";
+  return {};
+}
+
+}  // namespace afterglow
