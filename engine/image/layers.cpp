@@ -290,6 +290,19 @@ Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::
   return not_found(parts, layers, "layer", name);
 }
 
+std::vector<std::string> equal_colors(const std::vector<FilePart>& parts) {
+  constexpr int kFirstUnsure = 4;  // of `color_rank`: names that say nothing
+  const std::vector<Layer> layers = layers_of(parts);
+  std::vector<const Layer*> all;
+  for (const Layer& layer : layers) all.push_back(&layer);
+  const Layer* best = best_color(all);
+  if (!best || color_rank(*best) < kFirstUnsure) return {};
+  std::vector<std::string> names;
+  for (const Layer& layer : layers)
+    if (color_rank(layer) == color_rank(*best)) names.push_back(layer.name);
+  return names.size() > 1 ? names : std::vector<std::string>();
+}
+
 Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& parts, const std::string& name,
                                                 const ChannelChoice* color) {
   const std::vector<Layer> layers = layers_of(parts);

@@ -87,8 +87,9 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(color.part)];
     ColorEncoding encoding;
     encoding.grey = color.channels[0] == color.channels[1];
-    // JPEG 2000 is left straight where that is asked for, without a word.
-    const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || format_ == "jpeg2000";
+    // OpenImageIO says nothing of these, which hold straight colours (JPEG 2000: where that is asked for).
+    const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || format_ == "jpeg2000" ||
+                          format_ == "dpx" || format_ == "bmp" || format_ == "sgi";
     if (color.channels[3] >= 0) encoding.alpha = straight ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();

@@ -67,7 +67,8 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
   if (!found.value()) return std::optional<AuxiliaryPlan>();
   made.choice = *found.value();
   const Rect color_window = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
-  if (made.other && window.size() != color_window.size())
+  const bool same_frame = upright_display(plan.color_part()) == upright_display(plan.part_of(made));
+  if (made.other && !same_frame && window.size() != color_window.size())
     return Error{ErrorKind::io,
                  fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width,
                              window.height, plan.file->path().string(), color_window.width, color_window.height),
@@ -80,6 +81,24 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
 Rect upright_data(const FilePart& part) { return upright(part.data_window, part.display_window, part.orientation); }
 Rect upright_display(const FilePart& part) {
   return upright(part.display_window, part.display_window, part.orientation);
+}
+
+Rect upright_frame(const FilePart& part) {
+  constexpr std::uint64_t kMostTimes = 4;
+  const Rect data = upright_data(part), display = upright_display(part);
+  const int x0 = std::min(data.x, display.x), y0 = std::min(data.y, display.y);
+  const std::int64_t x1 = std::max(std::int64_t{data.x} + data.width, std::int64_t{display.x} + display.width),
+                     y1 = std::max(std::int64_t{data.y} + data.height, std::int64_t{display.y} + display.height);
+  const std::int64_t width = x1 - x0, height = y1 - y0;
+  if (std::max(width, height) > SizeLimits().max_side) return data;
+  const Rect both{x0, y0, static_cast<int>(width), static_cast<int>(height)};
+  return area(both) > kMostTimes * std::max(area(data), area(display)) ? data : both;
+}
+
+Rect upright_auxiliary(const ReadPlan& plan, const AuxiliaryPlan& auxiliary) {
+  const FilePart& part = plan.part_of(auxiliary);
+  if (!auxiliary.other || upright_display(part) == upright_display(plan.color_part())) return upright_data(part);
+  return upright_data(plan.color_part());
 }
 
 Result<ReadPlan> make_read_plan(const fs::path& file, const ReadOptions& options,
@@ -112,8 +131,9 @@ Result<ReadPlan> make_read_plan(const fs::path& file, const ReadOptions& options
 }
 
 std::uint64_t host_bytes(const ReadPlan& plan, const std::vector<std::string>& wanted) {
-  std::uint64_t images = area(plan.color_part().data_window) * 4 * sizeof(float);
-  std::uint64_t second = plan.color_part().orientation > 1 ? images : 0;
+  const std::uint64_t frame = area(upright_frame(plan.color_part())), pixels = area(plan.color_part().data_window);
+  std::uint64_t images = frame * 4 * sizeof(float);
+  std::uint64_t second = plan.color_part().orientation > 1 || frame != pixels ? pixels * 4 * sizeof(float) : 0;
   std::uint64_t buffers = plan.file->buffer_bytes(plan.color.part);
   for (const AuxiliaryPlan& auxiliary : plan.auxiliary) {
     if (std::find(wanted.begin(), wanted.end(), auxiliary.name) == wanted.end()) continue;
@@ -121,7 +141,7 @@ std::uint64_t host_bytes(const ReadPlan& plan, const std::vector<std::string>& w
     const std::uint64_t pixel =
         (auxiliary.kind ? static_cast<std::uint64_t>(auxiliary.kind->channels) : auxiliary.choice.channels.size()) *
         sizeof(float);
-    images += area(plan.color_part().data_window) * pixel;
+    images += frame * pixel;
     second = std::max(second, area(part.data_window) * pixel);
     buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
   }

@@ -62,5 +62,11 @@ std::uint64_t host_bytes(const ReadPlan& plan, const std::vector<std::string>& w
 /// Windows as the picture shows them.
 Rect upright_data(const FilePart& part);
 Rect upright_display(const FilePart& part);
+/// What is read: the data window, and the rest of the display window, where there is nothing: lengths, centres and what
+/// is kept from frame to frame go by the frame, not by the box that a renderer has found something in. A window that
+/// would be over four times as large as both is left as it is.
+Rect upright_frame(const FilePart& part);
+/// Where an auxiliary image lies. In a file of another display window, as the colour's pixels do.
+Rect upright_auxiliary(const ReadPlan& plan, const AuxiliaryPlan& auxiliary);
 
 }  // namespace afterglow

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -60,11 +61,13 @@ void add_targets(const std::vector<int>& channels, Image& image, std::vector<Rea
   }
 }
 
-/// `image`, which covers `window`, cut or padded to cover `wanted`.
-Image placed(Image image, const Rect& window, const Rect& wanted, float background) {
+/// `image`, which covers `window`, cut or padded to cover `wanted`, with `background` by channel.
+Image placed(Image image, const Rect& window, const Rect& wanted, const std::array<float, 4>& background) {
   if (window == wanted) return image;
   Image out(wanted.width, wanted.height, image.channels);
-  std::fill(out.pixels.begin(), out.pixels.end(), background);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i)
+    out.pixels[i] = background[std::min(i % channels, background.size() - 1)];
   const int x0 = std::max(window.x, wanted.x), x1 = std::min(window.x + window.width, wanted.x + wanted.width);
   const int y0 = std::max(window.y, wanted.y), y1 = std::min(window.y + window.height, wanted.y + wanted.height);
   for (int y = y0; y < y1 && x0 < x1; ++y)
@@ -160,6 +163,7 @@ Result<bool> read_halves(const ReadPlan& plan, const ColorEncoding& encoding, co
                          Picture& picture) {
   if (!options.halves || !options.memory || !plan.auxiliary.empty()) return false;
   if (plan.color_part().orientation > 1 || !stays_half(encoding)) return false;
+  if (picture.data_window != upright_data(plan.color_part())) return false;
   const Size size = picture.data_window.size();
   std::vector<std::uint16_t> halves = options.memory->take_halves(static_cast<std::size_t>(size.area()) * 4);
   HalfColors colors(halves.data(), size.width);
@@ -179,11 +183,15 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   const NanPolicy policy = options.nan_policy;
   const FilePart& part = plan.color_part();
   Picture picture;
-  picture.data_window = upright_data(part);
+  const Rect data = upright_data(part);
+  picture.data_window = upright_frame(part);
   picture.display_window = upright_display(part);
   picture.has_alpha = plan.color.channels[3] >= 0;
   picture.facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
   picture.layers = layer_names(plan.file->parts());
+  if (const auto equal = equal_colors(plan.file->parts()); options.layer.empty() && !equal.empty())
+    diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
+                                                     plan.file->path().string(), equal.front(), join(equal)));
   ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
   if (!options.input_space.empty()) {
     AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));
@@ -234,21 +242,27 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     }
     decode_color(encoding, picture.color, picture.sanitized, policy == NanPolicy::neighbour ? nullptr : &found);
   }
+  const auto in_frame = [&](NonFinite& layer, const Rect& window) {
+    if (!layer.first) return;
+    layer.first->x += window.x - picture.data_window.x;
+    layer.first->y += window.y - picture.data_window.y;
+  };
+  in_frame(found, data);
   note_layer(picture, "color", found);
+  picture.color =
+      placed(std::move(picture.color), data, picture.data_window, {0, 0, 0, picture.has_alpha ? 0.0f : 1.0f});
   for (std::size_t i = 0; i < auxiliary.size(); ++i) {
     const AuxiliaryPlan& extra = plan.auxiliary[i];
     const FilePart& from = plan.part_of(extra);
     Image image = upright(std::move(auxiliary[i]), from.orientation);
-    const Rect window = extra.other ? picture.data_window : upright_data(from);
+    const Rect window = upright_auxiliary(plan, extra);
     NonFinite in_layer = find_non_finite(image);
     if (in_layer.count() > 0 && policy == NanPolicy::neighbour) repair_from_neighbours(image);
-    if (in_layer.first) {  // its own window may lie elsewhere
-      in_layer.first->x += window.x - picture.data_window.x;
-      in_layer.first->y += window.y - picture.data_window.y;
-    }
+    in_frame(in_layer, window);
     note_layer(picture, extra.name, in_layer);
     if (extra.kind == &kMotion) image = motion_of(image);
-    image = placed(std::move(image), window, picture.data_window, extra.kind ? extra.kind->background : 0.0f);
+    const float nothing = extra.kind ? extra.kind->background : 0.0f;
+    image = placed(std::move(image), window, picture.data_window, {nothing, nothing, nothing, nothing});
     if (extra.kind == &kDepth) sanitize_depth(image, picture.sanitized);
     if (extra.kind == &kNormal) sanitize_normal(image, picture.sanitized);
     if (!extra.kind)
@@ -326,7 +340,7 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     AFTERGLOW_TRY(const auto opened, open_with(file, options, of_header(options)));
     header.opened = opened;
     const ReadPlan& plan = opened->plan;
-    header.data_window = upright_data(plan.color_part());
+    header.data_window = upright_frame(plan.color_part());
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
     for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.name);

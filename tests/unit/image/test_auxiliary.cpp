@@ -117,10 +117,32 @@ TEST_F(Auxiliary, PartsWithOtherWindowsAreCutAndPadded) {
   const Picture picture = read_or_fail(folder_ / "parts.exr", options_);
   const Image& image = picture.auxiliary.at("depth");
   ASSERT_EQ(image.size(), picture.color.size());
-  EXPECT_EQ(*image.at(0, 2), 1e10f);          // left of the depth's window
-  EXPECT_EQ(*image.at(1, 0), 1e10f);          // above it
-  EXPECT_EQ(*image.at(1, 1), mark(0, 0, 0));  // (3, 1) in the file
-  EXPECT_EQ(*image.at(3, 2), mark(2, 1, 0));
+  EXPECT_EQ(image.size(), (Size{10, 10}));
+  EXPECT_EQ(*image.at(2, 2), 1e10f);  // left of the depth's window
+  EXPECT_EQ(*image.at(3, 0), 1e10f);  // above it
+  EXPECT_EQ(*image.at(3, 1), mark(0, 0, 0));
+  EXPECT_EQ(*image.at(5, 2), mark(2, 1, 0));
+}
+
+TEST_F(Auxiliary, AnotherFileOfTheSameFrameLiesWhereItsWindowDoes) {
+  const auto file = [&](const std::string& name, const Rect& window, const std::vector<std::string>& channels) {
+    auto spec = make_spec(window.width, window.height, channels, OIIO::TypeFloat);
+    spec.x = window.x;
+    spec.y = window.y;
+    spec.full_width = spec.full_height = 10;
+    make_file(folder_ / name, {spec}, {marks(window.width, window.height, static_cast<int>(channels.size()))});
+  };
+  ASSERT_NO_FATAL_FAILURE(file("box.exr", {2, 3, 4, 3}, {"R", "G", "B"}));
+  ASSERT_NO_FATAL_FAILURE(file("whole.exr", {0, 0, 10, 10}, {"Z"}));
+  ASSERT_NO_FATAL_FAILURE(file("beside.exr", {5, 5, 4, 3}, {"Z"}));
+  options_.auxiliary = {"depth"};
+  options_.depth = {folder_ / "whole.exr", "Z"};
+  EXPECT_EQ(*read_or_fail(folder_ / "box.exr", options_).auxiliary.at("depth").at(7, 8), mark(7, 8, 0));
+  options_.depth = {folder_ / "beside.exr", "Z"};
+  const Picture picture = read_or_fail(folder_ / "box.exr", options_);
+  EXPECT_EQ(*picture.auxiliary.at("depth").at(5, 5), mark(0, 0, 0));
+  EXPECT_EQ(*picture.auxiliary.at("depth").at(2, 3), 1e10f) << "there is colour, but no depth";
+  EXPECT_EQ(picture.color.at(2, 3)[1], mark(0, 0, 1));
 }
 
 TEST_F(Auxiliary, BackgroundAndNonFinite) {

@@ -64,6 +64,17 @@ TEST(Layers, PlainNames) {
   EXPECT_THAT(normal({part({"R", "G", "B", "NX", "NY", "NZ"})}), ElementsAre("NX", "NY", "NZ"));
 }
 
+TEST(Layers, SeveralThatLookAlikeAreTold) {
+  const auto equal = [](const std::vector<std::string>& channels) {
+    return equal_colors({{.name = "", .channels = channels, .data_window = {}, .display_window = {}, .unreadable = ""}});
+  };
+  EXPECT_THAT(equal({"diffuse.R", "diffuse.G", "diffuse.B", "specular.R", "specular.G", "specular.B"}),
+              testing::ElementsAre("diffuse", "specular"));
+  EXPECT_TRUE(equal({"R", "G", "B", "specular.R", "specular.G", "specular.B"}).empty());
+  EXPECT_TRUE(equal({"beauty.R", "beauty.G", "beauty.B", "specular.R", "specular.G", "specular.B"}).empty());
+  EXPECT_TRUE(equal({"diffuse.R", "diffuse.G", "diffuse.B"}).empty());
+}
+
 TEST(Layers, VectorsAreNoDepth) {
   EXPECT_THAT(depth({part({"R", "G", "B", "N.X", "N.Y", "N.Z", "Position.X", "Position.Y", "Position.Z"})}),
               ElementsAre());

@@ -151,6 +151,18 @@ TEST(MoreFormats, PamHasStraightAlpha) {
                 std::string("\xff\0\0\x80\0\0\0\0", 8));
 }
 
+TEST(MoreFormats, AlphaComesBack) {
+  const TemporaryFolder folder;
+  Picture picture = wedge(2, 1, true);
+  picture.color.pixels = {0.4f, 0.2f, 0.1f, 0.5f, 0.75f, 0.5f, 0.25f, 1};
+  for (const char* name : {"o.dpx", "o.png", "o.tif", "o.tga", "o.webp", "o.exr"}) {
+    const bool deep = std::string_view(name) == "o.dpx" || std::string_view(name) == "o.tif";
+    ASSERT_TRUE(write(picture, folder / name, with(deep ? SampleType::uint16 : SampleType::automatic))) << name;
+    const Picture back = read_or_fail(folder / name);
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(back.color.pixels[i], picture.color.pixels[i], 0.006) << name << i;
+  }
+}
+
 TEST(MoreFormats, WhatAFormatCannotHold) {
   const TemporaryFolder folder;
   struct Case {
