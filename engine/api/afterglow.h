@@ -454,7 +454,8 @@ AFTERGLOW_API VkFormat afterglow_stack_result_format(const afterglow_stack *stac
 
 /* Says which images the next recordings read and write. After each afterglow_stack_prepare that made something new, and
  * whenever images change. Nothing that was recorded from the stack may be in flight. One thread at a time.
- * Errors: other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS). */
+ * Errors: other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS, nothing
+ * prepared). */
 AFTERGLOW_API afterglow_error *afterglow_stack_bind(afterglow_stack *stack, const afterglow_bindings *bindings);
 
 /* Records the stack. Inputs must be in SHADER_READ_ONLY_OPTIMAL, their writes made visible to sampled reads of fragment

@@ -25,15 +25,34 @@ TEST_F(CommandsTest, TheOrderOfCallsIsKept) {
   auto* commands = reinterpret_cast<VkCommandBuffer>(1);  // never reached
   const ErrorPtr early(afterglow_stack_record(stack.get(), commands));
   EXPECT_THAT(text_of(early.get()), HasSubstr("afterglow_stack_prepare first"));
+  const afterglow_bindings nothing = afterglow_bindings_default();
+  const ErrorPtr bound_early(afterglow_stack_bind(stack.get(), &nothing));
+  EXPECT_EQ(afterglow_error_get_kind(bound_early.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_THAT(text_of(bound_early.get()), HasSubstr("afterglow_stack_prepare first"));
   const afterglow_shape wanted = shape();
   ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
   EXPECT_TRUE(afterglow_stack_runs(stack.get()));
   const ErrorPtr unbound(afterglow_stack_record(stack.get(), commands));
   EXPECT_THAT(text_of(unbound.get()), HasSubstr("afterglow_stack_bind first"));
-  const afterglow_bindings nothing = afterglow_bindings_default();
   EXPECT_TRUE(ErrorPtr(afterglow_stack_bind(stack.get(), &nothing)));
   EXPECT_EQ(afterglow_error_get_kind(ErrorPtr(afterglow_stack_record(stack.get(), nullptr)).get()),
             AFTERGLOW_ERROR_USAGE);
+}
+
+/// Also where effects look back: their programs are given images of histories, which are not the caller's.
+TEST_F(CommandsTest, WhatIsNewWantsToBeBound) {
+  look("fx.auto_exposure { enabled = false }");
+  const StackPtr stack = this->stack(recording());
+  const afterglow_shape wanted = shape();
+  const afterglow_bindings nothing = afterglow_bindings_default();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  ASSERT_TRUE(fine(afterglow_stack_bind(stack.get(), &nothing))) << "nothing runs";
+  ASSERT_TRUE(fine(afterglow_stack_set_boolean(stack.get(), str("auto_exposure.enabled"), true)));
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+  const ErrorPtr unbound(afterglow_stack_record(stack.get(), reinterpret_cast<VkCommandBuffer>(1)));
+  EXPECT_EQ(afterglow_error_get_kind(unbound.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_THAT(text_of(unbound.get()), HasSubstr("afterglow_stack_bind first"));
 }
 
 TEST_F(CommandsTest, WhatIsPreparedOutlastsFailures) {
