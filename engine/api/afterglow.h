@@ -16,6 +16,7 @@
  *
  * Strings: what is passed in is a view; it need not end with NUL and is copied where it is kept. What comes out is a
  * view into the object it was asked of, valid as long as that object; a NUL follows its last byte. All are UTF-8.
+ * Relative paths are those of the working directory of that call; it may change later.
  *
  * Structures: the first member says how large the structure was when the caller was compiled. The functions
  * afterglow_..._default() fill it in, with defaults for the rest. Later versions add members at the end.

@@ -68,6 +68,8 @@ namespace {
 Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (!is_given(given.preset_file) && !is_given(given.preset_text))
     return usage("afterglow_stack_options: neither preset_file nor preset_text is given");
+  if (is_given(given.preset_file) && given.preset_file.size == 0)
+    return usage("afterglow_stack_options: preset_file is empty");
   if (given.follow && is_given(given.preset_text))
     return usage("afterglow_stack_options: a preset_text cannot be followed");
   if (given.path_count > 0 && !given.paths) return usage("afterglow_stack_options: paths is NULL");
@@ -75,17 +77,18 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (!(given.max_error >= 0)) return usage("afterglow_stack_options: max_error must not be negative");
 
   BackendOptions out;
-  for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(text_of(given.paths[i]));
+  for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(path_of(given.paths[i]));
   for (std::size_t i = 0; i < given.argument_count; ++i) {
     AFTERGLOW_TRY(out.stack.preset.arguments.emplace_back(), parse_argument(text_of(given.arguments[i])));
   }
-  out.stack.preset.installation = text_of(given.installation);
+  out.stack.preset.installation = path_of(given.installation);
   if (is_given(given.preset_text)) {
-    out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";
+    out.preset = is_given(given.preset_file) ? path_of(given.preset_file) : "preset.lua";
     out.stack.preset.text = text_of(given.preset_text);
   } else {
-    AFTERGLOW_TRY(out.preset,
+    AFTERGLOW_TRY(const std::filesystem::path found,
                   find_preset_file(text_of(given.preset_file), out.stack.preset.paths, out.stack.preset.installation));
+    out.preset = path_of(view(found.string()));
   }
   switch (given.precision) {
     case AFTERGLOW_PRECISION_AUTOMATIC:
@@ -103,7 +106,7 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
     return usage("afterglow_stack_options: unknown use");
   if (given.max_error > 0) out.stack.max_error = given.max_error;
   if (given.max_memory > 0) out.stack.max_memory = given.max_memory;
-  out.stack.calibration = text_of(given.calibration);
+  out.stack.calibration = path_of(given.calibration);
   out.stack.reference = given.reference;
   out.commands = given.use == AFTERGLOW_USE_COMMANDS;
   out.follow = given.follow;
