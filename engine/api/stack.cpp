@@ -116,6 +116,17 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   return out;
 }
 
+/// Of each image once.
+void tell_what_was_mended(const MendedImages& mended, Diagnostics& diagnostics) {
+  const auto tell = [&](ImageRole role, const char* what) {
+    if (const std::uint64_t count = mended[role]) diagnostics.warn_once(what, fmt::format(fmt::runtime(what), count));
+  };
+  tell(ImageRole::color, "the source has {} samples that are not finite or negative; they were mended");
+  tell(ImageRole::depth, "image 'depth' has {} pixels that are not finite; they count as far away");
+  tell(ImageRole::normal, "image 'normal' has {} pixels that are not finite; they count as without a normal");
+  tell(ImageRole::motion, "image 'motion' has {} pixels that are not finite; they count as at rest");
+}
+
 struct Input {
   const char* name;
   const afterglow_image* image;
@@ -127,7 +138,7 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   if (backend.options().commands)
     return usage(
         "afterglow_stack_run: the stack was made with AFTERGLOW_USE_COMMANDS; allowed: afterglow_stack_record");
-  stack.mended = 0;
+  stack.mended.clear();
   AFTERGLOW_TRY(const Pixels source, check_image(info.source, ImageRole::color, "source"));
   AFTERGLOW_TRY(const Pixels result, check_image(info.result, ImageRole::color, "result"));
   const auto same_size = [&](const Pixels& image, const char* name) -> Result<void> {
@@ -140,14 +151,15 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   Shape shape;
   AFTERGLOW_TRY(shape.context, context_of(info.frame, source.size));
   AFTERGLOW_TRY(shape.region, region_of(info.region, source.size));
-  std::map<std::string, HostImage> inputs{{"source", input_image(source, ImageRole::color, stack.mended)}};
+  std::map<std::string, HostImage> inputs{
+      {"source", input_image(source, ImageRole::color, stack.mended[ImageRole::color])}};
   for (const Input& input :
        {Input{"depth", &info.depth, ImageRole::depth}, Input{"normal", &info.normal, ImageRole::normal},
         Input{"motion", &info.motion, ImageRole::motion}}) {
     if (!input.image->data) continue;
     AFTERGLOW_TRY(const Pixels pixels, check_image(*input.image, input.role, input.name));
     AFTERGLOW_CHECK(same_size(pixels, input.name));
-    inputs[input.name] = input_image(pixels, input.role, stack.mended);
+    inputs[input.name] = input_image(pixels, input.role, stack.mended[input.role]);
     shape.context.auxiliary[input.name] = pixels.size;
   }
   if (result.samples == AFTERGLOW_UINT8)
@@ -158,9 +170,7 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
                                  .region = shape.region.value_or(Rect{0, 0, source.size.width, source.size.height}),
                                  .dither = info.dither});
   AFTERGLOW_CHECK(backend.run(shape, inputs, rows));
-  if (const std::uint64_t count = stack.mended)
-    backend.diagnostics().warn_once(
-        "mended", fmt::format("the source has {} samples that are not finite or negative; they were mended", count));
+  tell_what_was_mended(stack.mended, backend.diagnostics());
   return {};
 }
 
@@ -250,6 +260,6 @@ afterglow_error* afterglow_stack_explain(const afterglow_stack* stack, afterglow
 afterglow_error* afterglow_stack_report(const afterglow_stack* stack, afterglow_text** out) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_report"));
-    return give(report_document(backend->report(), stack->mended), out, "afterglow_stack_report");
+    return give(report_document(backend->report(), stack->mended.sum()), out, "afterglow_stack_report");
   });
 }
