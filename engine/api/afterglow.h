@@ -341,7 +341,7 @@ typedef struct afterglow_shape {
   size_t struct_size;
   int32_t width, height;      /* of the source; 1 to 16384 */
   bool depth, normal, motion; /* what comes with it */
-  bool display_codes;         /* the result will be 8-bit: sRGB codes */
+  bool display_codes;         /* the result will be 8-bit: sRGB codes (not with `reference`, which makes floats) */
   bool straight_alpha;        /* with `display_codes`: colours are divided by the source's alpha, which is stored */
   bool dither;                /* with `display_codes` */
   afterglow_rect region;
@@ -363,8 +363,9 @@ AFTERGLOW_API afterglow_error *afterglow_stack_prepare(afterglow_stack *stack, c
                                                        const afterglow_frame *frame);
 
 /* Whether there is anything to run for the frame that was prepared last. If not, the result is the source:
- * afterglow_stack_record records nothing then, and the caller copies. False where nothing is prepared: at first, and
- * after a change that was taken (set, unset, update, reload). One thread at a time. */
+ * afterglow_stack_record records nothing then, and the caller copies. With display codes there always is something to
+ * record: the encoding. False where nothing is prepared: at first, and after a change that was taken (set, unset,
+ * update, reload). One thread at a time. */
 AFTERGLOW_API bool afterglow_stack_runs(const afterglow_stack *stack);
 
 /* What earlier frames handed on is forgotten. One thread at a time. */

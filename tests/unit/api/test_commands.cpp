@@ -116,6 +116,24 @@ TEST_F(CommandsTest, TheResultsFormatIsTold) {
   EXPECT_EQ(afterglow_stack_result_format(codes.get()), VK_FORMAT_R8G8B8A8_UNORM);
 }
 
+/// Whoever switches the last effect off still has codes.
+TEST_F(CommandsTest, CodesAreMadeWhereNoEffectRuns) {
+  look("fx.gain { off = true }");
+  const StackPtr stack = this->stack(recording());
+  afterglow_shape wanted = shape();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  EXPECT_FALSE(afterglow_stack_runs(stack.get()));
+  wanted.display_codes = true;
+  for (const bool straight : {false, true})
+    for (const bool dither : {false, true}) {
+      wanted.straight_alpha = straight;
+      wanted.dither = dither;
+      ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+      EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+      EXPECT_EQ(afterglow_stack_result_format(stack.get()), VK_FORMAT_R8G8B8A8_UNORM);
+    }
+}
+
 TEST_F(CommandsTest, AdoptedDevicesAreChecked) {
   afterglow_device* device = nullptr;
   const afterglow_adopted_device nothing = afterglow_adopted_device_default();
