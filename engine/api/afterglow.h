@@ -114,8 +114,10 @@ AFTERGLOW_API void afterglow_text_free(afterglow_text *text);
 
 typedef enum afterglow_severity { AFTERGLOW_NOTE = 0, AFTERGLOW_WARNING = 1 } afterglow_severity;
 
-/* Something that stops nothing. `message` is valid during the call. May be called on any thread, but not on two at
- * once for one object. Must not call back into the library. */
+/* Something that stops nothing: a warning, the device that was chosen, what a preset prints. When a preset is loaded
+ * again (by a setting that is set, an edit), what it said the last time is not repeated.
+ * `message` is valid during the call. May be called on any thread, but not on two at once for one object. Must not call
+ * back into the library. */
 typedef void (*afterglow_message_callback)(void *user, afterglow_severity severity, afterglow_string message);
 
 /* A stack with `follow` has something for afterglow_stack_update. Called on threads of the library: it only wakes the

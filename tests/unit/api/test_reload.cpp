@@ -143,6 +143,31 @@ TEST_F(ReloadTest, WhatThePresetNoLongerHasIsLeftOut) {
   }
 }
 
+/// What a preset prints is told once, and again when it prints something else.
+TEST_F(ReloadTest, WhatScriptsPrintIsTold) {
+  const auto printing = [&](const char* word) {
+    write("look.lua", std::string("local fx = require \"afterglow\"\nprint(\"") + word +
+                          "\")\nreturn fx.stack { fx.gain { amount = 2 } }\n");
+  };
+  for (const bool follow : {false, true}) {
+    printing("first");
+    afterglow_stack_options options = listening();
+    messages_.clear();
+    options.follow = follow;
+    const StackPtr stack = this->stack(options);
+    EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("look.lua:2: first")));
+    EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+    for (const double amount : {3.0, 4.0, 5.0})
+      ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), amount)));
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_set_number(stack.get(), str("gain.amonut"), 1)));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.5f);
+    EXPECT_EQ(messages_.size(), 1u);
+    printing("second");
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("first"), HasSubstr("look.lua:2: second")));
+  }
+}
+
 /// Paths that are given are those of the working directory at that time.
 TEST_F(ReloadTest, AHostMayChangeItsWorkingDirectory) {
   const fs::path home = fs::current_path();
