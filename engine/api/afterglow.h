@@ -132,7 +132,7 @@ typedef struct afterglow_device_options {
   bool validate;                 /* load the Khronos validation layer; its messages go to `message` */
   afterglow_string cache_folder; /* compiled shaders and pipelines are kept there; not given: nowhere */
   afterglow_message_callback message;
-  void *user; /* for `message` */
+  void *user; /* for `message`; must outlive the device and its stacks */
 } afterglow_device_options;
 
 static inline afterglow_device_options afterglow_device_options_default(void) {
@@ -146,7 +146,8 @@ static inline afterglow_device_options afterglow_device_options_default(void) {
  * Errors: device (none, none that matches), usage. */
 AFTERGLOW_API afterglow_error *afterglow_device_open(const afterglow_device_options *options, afterglow_device **out);
 
-/* Stacks keep what they need of their device: it may be freed before them. NULL does nothing. One thread. */
+/* Stacks keep what they need of their device, its callback too: it may be freed before them. NULL does nothing. One
+ * thread. */
 AFTERGLOW_API void afterglow_device_free(afterglow_device *device);
 
 /* JSON: {"name", "type", "driver", "uuid", "validation_errors", "validation_messages"}. Any thread. */
@@ -188,7 +189,7 @@ typedef struct afterglow_stack_options {
   bool follow;
   afterglow_message_callback message;
   afterglow_wake_callback wake; /* only with `follow` */
-  void *user;                   /* for both callbacks */
+  void *user;                   /* for both callbacks; must outlive the stack */
   /* Values of what the preset declares by fx.args: "NAME=VALUE" each, as for `afterglow --arg`. */
   const afterglow_string *arguments;
   size_t argument_count;
@@ -302,7 +303,7 @@ typedef enum afterglow_samples {
 typedef struct afterglow_image {
   void *data;            /* the upper left pixel; NULL: no image. Sources are only read */
   int32_t width, height; /* 1 to 16384 */
-  int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3, motion 2 */
+  int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3 or 4, motion 2 to 4 (the last ones unused) */
   afterglow_samples samples;
   ptrdiff_t row_stride;   /* bytes from one row to the next, may be negative; 0: rows without gaps */
   ptrdiff_t pixel_stride; /* bytes from one pixel to the next; 0: pixels without gaps */
@@ -357,10 +358,12 @@ static inline afterglow_shape afterglow_shape_default(void) {
 }
 
 /* Makes shaders, pipelines and memory for pictures of this shape, or only computes the parameters of this frame when
- * they are there. `frame` may be NULL. afterglow_stack_run does it by itself; hosts that record call it for each frame
- * whose number, time or settings differ. Nothing that was recorded from the stack may be in flight. One thread at a
- * time. Errors: usage, script, io (memory limit), device. After an error what was prepared before stays, unless shaders
- * or images could not be made: afterglow_stack_runs is false then. */
+ * the shape and the structure of the look are those of the frame before: another size or region is made anew, also one
+ * that was there earlier (compiled shaders are kept). For shapes in turn make a stack for each. `frame` may be NULL.
+ * afterglow_stack_run does it by itself; hosts that record call it for each frame whose number, time or settings
+ * differ. Nothing that was recorded from the stack may be in flight. One thread at a time. Errors: usage, script, io
+ * (memory limit), device. After an error what was prepared before stays, unless shaders or images could not be made:
+ * afterglow_stack_runs is false then. */
 AFTERGLOW_API afterglow_error *afterglow_stack_prepare(afterglow_stack *stack, const afterglow_shape *shape,
                                                        const afterglow_frame *frame);
 
@@ -416,7 +419,7 @@ typedef struct afterglow_adopted_device {
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
   afterglow_string cache_folder; /* as for afterglow_device_options */
   afterglow_message_callback message;
-  void *user;
+  void *user; /* for `message`; must outlive the device and its stacks */
 } afterglow_adopted_device;
 
 static inline afterglow_adopted_device afterglow_adopted_device_default(void) {
