@@ -115,9 +115,8 @@ AFTERGLOW_API void afterglow_text_free(afterglow_text *text);
 typedef enum afterglow_severity { AFTERGLOW_NOTE = 0, AFTERGLOW_WARNING = 1 } afterglow_severity;
 
 /* Something that stops nothing: a warning, the device that was chosen, what a preset prints. When a preset is loaded
- * again (by a setting that is set, an edit), what it said the last time is not repeated.
- * `message` is valid during the call. May be called on any thread, but not on two at once for one object. Must not call
- * back into the library. */
+ * again (by a setting that is set, an edit), what it said the last time is not repeated. `message` is valid during the
+ * call. May be called on any thread, but not on two at once for one object. Must not call back into the library. */
 typedef void (*afterglow_message_callback)(void *user, afterglow_severity severity, afterglow_string message);
 
 /* A stack with `follow` has something for afterglow_stack_update. Called on threads of the library: it only wakes the
@@ -170,7 +169,7 @@ typedef struct afterglow_stack_options {
   size_t struct_size;
   afterglow_string preset_file; /* a file, a pack (folder or zip), or the name of a preset on the search path */
   /* The preset itself. `preset_file` is then the name that messages give it, and its folder is where effects and
-   * shaders are looked for first; the file need not exist. */
+   * shaders are looked for first; the file need not exist. Without a folder it is given as it is. */
   afterglow_string preset_text;
   const afterglow_string *paths; /* further folders and packs with effects, shaders and presets */
   size_t path_count;

@@ -69,7 +69,7 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (!is_given(given.preset_file) && !is_given(given.preset_text))
     return usage("afterglow_stack_options: neither preset_file nor preset_text is given");
   if (is_given(given.preset_file) && given.preset_file.size == 0)
-    return usage("afterglow_stack_options: preset_file is empty");
+    return usage("afterglow_stack_options: preset_file is empty; allowed: a file, a pack or the name of a preset");
   if (given.follow && is_given(given.preset_text))
     return usage("afterglow_stack_options: a preset_text cannot be followed");
   if (given.path_count > 0 && !given.paths) return usage("afterglow_stack_options: paths is NULL");
@@ -83,7 +83,8 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   }
   out.stack.preset.installation = path_of(given.installation);
   if (is_given(given.preset_text)) {
-    out.preset = is_given(given.preset_file) ? path_of(given.preset_file) : "preset.lua";
+    out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";
+    if (out.preset.has_parent_path()) out.preset = path_of(given.preset_file);  // else a name for messages alone
     out.stack.preset.text = text_of(given.preset_text);
   } else {
     AFTERGLOW_TRY(const std::filesystem::path found,

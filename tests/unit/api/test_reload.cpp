@@ -245,6 +245,9 @@ TEST_F(ReloadTest, APresetMayBeAText) {
   EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
   EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
 
+  options.preset_text = afterglow_str("return nil");
+  options.preset_file = afterglow_str("a look of mine");
+  EXPECT_EQ(str(afterglow_error_get_file(broken(options).get())), "a look of mine");
   options.preset_file = afterglow_str("");
   EXPECT_THAT(text_of(broken(options).get()), HasSubstr("preset_file is empty"));
   options.preset_text = {};
@@ -252,7 +255,7 @@ TEST_F(ReloadTest, APresetMayBeAText) {
   EXPECT_EQ(afterglow_error_get_kind(empty.get()), AFTERGLOW_ERROR_USAGE);
   options.preset_file = str(name);
 
-  options.preset_text = str("return nil");
+  options.preset_text = afterglow_str("return nil");
   options.follow = true;
   EXPECT_EQ(afterglow_error_get_kind(broken(options).get()), AFTERGLOW_ERROR_USAGE);
 }
