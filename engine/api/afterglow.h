@@ -16,6 +16,7 @@
  *
  * Strings: what is passed in is a view; it need not end with NUL and is copied where it is kept. What comes out is a
  * view into the object it was asked of, valid as long as that object; a NUL follows its last byte. All are UTF-8.
+ * Relative paths are those of the working directory of that call; it may change later.
  *
  * Structures: the first member says how large the structure was when the caller was compiled. The functions
  * afterglow_..._default() fill it in, with defaults for the rest. Later versions add members at the end.
@@ -113,8 +114,9 @@ AFTERGLOW_API void afterglow_text_free(afterglow_text *text);
 
 typedef enum afterglow_severity { AFTERGLOW_NOTE = 0, AFTERGLOW_WARNING = 1 } afterglow_severity;
 
-/* Something that stops nothing. `message` is valid during the call. May be called on any thread, but not on two at
- * once for one object. Must not call back into the library. */
+/* Something that stops nothing: a warning, the device that was chosen, what a preset prints. When a preset is loaded
+ * again (by a setting that is set, an edit), what it said the last time is not repeated. `message` is valid during the
+ * call. May be called on any thread, but not on two at once for one object. Must not call back into the library. */
 typedef void (*afterglow_message_callback)(void *user, afterglow_severity severity, afterglow_string message);
 
 /* A stack with `follow` has something for afterglow_stack_update. Called on threads of the library: it only wakes the
@@ -129,7 +131,7 @@ typedef struct afterglow_device_options {
   bool validate;                 /* load the Khronos validation layer; its messages go to `message` */
   afterglow_string cache_folder; /* compiled shaders and pipelines are kept there; not given: nowhere */
   afterglow_message_callback message;
-  void *user; /* for `message` */
+  void *user; /* for `message`; must outlive the device and its stacks */
 } afterglow_device_options;
 
 static inline afterglow_device_options afterglow_device_options_default(void) {
@@ -143,7 +145,8 @@ static inline afterglow_device_options afterglow_device_options_default(void) {
  * Errors: device (none, none that matches), usage. */
 AFTERGLOW_API afterglow_error *afterglow_device_open(const afterglow_device_options *options, afterglow_device **out);
 
-/* Stacks keep what they need of their device: it may be freed before them. NULL does nothing. One thread. */
+/* Stacks keep what they need of their device, its callback too: it may be freed before them. NULL does nothing. One
+ * thread. */
 AFTERGLOW_API void afterglow_device_free(afterglow_device *device);
 
 /* JSON: {"name", "type", "driver", "uuid", "validation_errors", "validation_messages"}. Any thread. */
@@ -166,7 +169,7 @@ typedef struct afterglow_stack_options {
   size_t struct_size;
   afterglow_string preset_file; /* a file, a pack (folder or zip), or the name of a preset on the search path */
   /* The preset itself. `preset_file` is then the name that messages give it, and its folder is where effects and
-   * shaders are looked for first; the file need not exist. */
+   * shaders are looked for first; the file need not exist. Without a folder it is given as it is. */
   afterglow_string preset_text;
   const afterglow_string *paths; /* further folders and packs with effects, shaders and presets */
   size_t path_count;
@@ -185,7 +188,7 @@ typedef struct afterglow_stack_options {
   bool follow;
   afterglow_message_callback message;
   afterglow_wake_callback wake; /* only with `follow` */
-  void *user;                   /* for both callbacks */
+  void *user;                   /* for both callbacks; must outlive the stack */
   /* Values of what the preset declares by fx.args: "NAME=VALUE" each, as for `afterglow --arg`. */
   const afterglow_string *arguments;
   size_t argument_count;
@@ -299,7 +302,7 @@ typedef enum afterglow_samples {
 typedef struct afterglow_image {
   void *data;            /* the upper left pixel; NULL: no image. Sources are only read */
   int32_t width, height; /* 1 to 16384 */
-  int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3, motion 2 */
+  int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3 or 4, motion 2 to 4 (the last ones unused) */
   afterglow_samples samples;
   ptrdiff_t row_stride;   /* bytes from one row to the next, may be negative; 0: rows without gaps */
   ptrdiff_t pixel_stride; /* bytes from one pixel to the next; 0: pixels without gaps */
@@ -327,8 +330,8 @@ static inline afterglow_run_info afterglow_run_info_default(void) {
 }
 
 /* Runs the stack on a picture and waits for the result. What the size needs is made first, if it is not there: shaders,
- * pipelines, memory. Values that are not finite, and negative colours, are mended in the source, and the message
- * callback is told once. Alpha comes out as it went in. One thread at a time.
+ * pipelines, memory. Values that are not finite, and negative colours, are mended as they are read, and the message
+ * callback is told once of each image. Alpha comes out as it went in. One thread at a time.
  * On an adopted device the caller must not use the queue meanwhile.
  * Errors: usage (sizes, channels), script (at this frame), io (memory limit), device. After an error the result may
  * have been written in part. */
@@ -340,7 +343,7 @@ typedef struct afterglow_shape {
   size_t struct_size;
   int32_t width, height;      /* of the source; 1 to 16384 */
   bool depth, normal, motion; /* what comes with it */
-  bool display_codes;         /* the result will be 8-bit: sRGB codes */
+  bool display_codes;         /* the result will be 8-bit: sRGB codes (not with `reference`, which makes floats) */
   bool straight_alpha;        /* with `display_codes`: colours are divided by the source's alpha, which is stored */
   bool dither;                /* with `display_codes` */
   afterglow_rect region;
@@ -354,16 +357,19 @@ static inline afterglow_shape afterglow_shape_default(void) {
 }
 
 /* Makes shaders, pipelines and memory for pictures of this shape, or only computes the parameters of this frame when
- * they are there. `frame` may be NULL. afterglow_stack_run does it by itself; hosts that record call it for each frame
- * whose number, time or settings differ. Nothing that was recorded from the stack may be in flight. One thread at a
- * time. Errors: usage, script, io (memory limit), device. After an error what was prepared before stays, unless shaders
- * or images could not be made: afterglow_stack_runs is false then. */
+ * the shape and the structure of the look are those of the frame before: another size or region is made anew, also one
+ * that was there earlier (compiled shaders are kept). For shapes in turn make a stack for each. `frame` may be NULL.
+ * afterglow_stack_run does it by itself; hosts that record call it for each frame whose number, time or settings
+ * differ. Nothing that was recorded from the stack may be in flight. One thread at a time. Errors: usage, script, io
+ * (memory limit), device. After an error what was prepared before stays, unless shaders or images could not be made:
+ * afterglow_stack_runs is false then. */
 AFTERGLOW_API afterglow_error *afterglow_stack_prepare(afterglow_stack *stack, const afterglow_shape *shape,
                                                        const afterglow_frame *frame);
 
 /* Whether there is anything to run for the frame that was prepared last. If not, the result is the source:
- * afterglow_stack_record records nothing then, and the caller copies. False where nothing is prepared: at first, and
- * after a change that was taken (set, unset, update, reload). One thread at a time. */
+ * afterglow_stack_record records nothing then, and the caller copies. With display codes there always is something to
+ * record: the encoding. False where nothing is prepared: at first, and after a change that was taken (set, unset,
+ * update, reload). One thread at a time. */
 AFTERGLOW_API bool afterglow_stack_runs(const afterglow_stack *stack);
 
 /* What earlier frames handed on is forgotten. One thread at a time. */
@@ -412,7 +418,7 @@ typedef struct afterglow_adopted_device {
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
   afterglow_string cache_folder; /* as for afterglow_device_options */
   afterglow_message_callback message;
-  void *user;
+  void *user; /* for `message`; must outlive the device and its stacks */
 } afterglow_adopted_device;
 
 static inline afterglow_adopted_device afterglow_adopted_device_default(void) {
@@ -454,7 +460,8 @@ AFTERGLOW_API VkFormat afterglow_stack_result_format(const afterglow_stack *stac
 
 /* Says which images the next recordings read and write. After each afterglow_stack_prepare that made something new, and
  * whenever images change. Nothing that was recorded from the stack may be in flight. One thread at a time.
- * Errors: other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS). */
+ * Errors: other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS, nothing
+ * prepared). */
 AFTERGLOW_API afterglow_error *afterglow_stack_bind(afterglow_stack *stack, const afterglow_bindings *bindings);
 
 /* Records the stack. Inputs must be in SHADER_READ_ONLY_OPTIMAL, their writes made visible to sampled reads of fragment

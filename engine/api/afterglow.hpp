@@ -67,6 +67,11 @@ std::string text_from(Function function) {
   return to_string(afterglow_text_get(text));
 }
 
+/// Integers of all sizes, and enumerators that are used as such; a boolean is none.
+template <class T>
+constexpr bool is_whole = (std::is_integral_v<T> && !std::is_same_v<T, bool>) ||
+                          (std::is_enum_v<T> && std::is_convertible_v<T, int>);
+
 }  // namespace detail
 
 /// May be called on any thread. What it throws is lost.
@@ -221,7 +226,10 @@ class Stack {
   }
 
   void set(std::string_view name, double value) { check(afterglow_stack_set_number(get(), to_view(name), value)); }
-  void set(std::string_view name, int value) { set(name, static_cast<double>(value)); }
+  template <class Whole, std::enable_if_t<detail::is_whole<Whole>, int> = 0>
+  void set(std::string_view name, Whole value) {
+    set(name, static_cast<double>(value));
+  }
   void set(std::string_view name, bool value) { check(afterglow_stack_set_boolean(get(), to_view(name), value)); }
   void set(std::string_view name, const char* value) { set(name, std::string_view(value)); }
   void set(std::string_view name, std::string_view value) {

@@ -140,19 +140,21 @@ Result<void> Backend::run_frame(const Shape& shape, const std::map<std::string, 
   return {};
 }
 
+namespace {
+Error nothing_is_prepared() { return {ErrorKind::usage, "nothing is prepared: call afterglow_stack_prepare first"}; }
+}  // namespace
+
 Result<void> Backend::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
-  AFTERGLOW_CHECK(source_->stack().bind(inputs, result));
-  bound_ = true;
-  return {};
+  if (!prepared_) return nothing_is_prepared();
+  return source_->stack().bind(inputs, result);
 }
 
 Result<void> Backend::record(VkCommandBuffer commands) {
-  const auto early = [](const char* what) { return Error{ErrorKind::usage, what}; };
-  if (!prepared_) return early("nothing is prepared: call afterglow_stack_prepare first");
+  if (!prepared_) return nothing_is_prepared();
   Stack& stack = source_->stack();
   if (!stack.runs()) return {};
-  if (!bound_ || stack.program()->bindings() == 0)
-    return early("no images are bound for what was prepared: call afterglow_stack_bind first");
+  if (!stack.program()->bound())
+    return Error{ErrorKind::usage, "no images are bound for what was prepared: call afterglow_stack_bind first"};
   stack.record(commands);
   last_.kernels.clear();
   for (const auto& kernel : stack.program()->plan().kernels) last_.kernels.push_back(kernel.name);

@@ -134,7 +134,7 @@ class Backend {
   Given given_;
   std::unique_ptr<Source> source_;
   std::unique_ptr<Renderer> renderer_;  // first to go: it waits for what is in flight
-  bool prepared_ = false, bound_ = false;
+  bool prepared_ = false;
   // Of the last frame.
   std::shared_ptr<const Build> build_;
   std::vector<Skipped> skipped_;

@@ -11,6 +11,23 @@
 namespace afterglow::api {
 namespace {
 
+/// Messages of a load, those of the one before left out.
+class NewMessages {
+ public:
+  bool is_new(const std::string& message) {
+    said_.push_back(message);
+    return std::ranges::find(before_, message) == before_.end();
+  }
+  /// The load is over; when it has failed, the one before it still counts.
+  void end(bool loaded) {
+    if (loaded) before_ = std::move(said_);
+    said_.clear();
+  }
+
+ private:
+  std::vector<std::string> before_, said_;
+};
+
 /// Loaded in the caller's thread, whenever it asks. Scripts and shaders are what they were when they were read first:
 /// only `reload` reads them again.
 class Loaded : public Source {
@@ -39,7 +56,11 @@ class Loaded : public Source {
 
  private:
   Result<void> load(const StackOptions& wanted) {
-    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
+    loading_ = true;
+    auto loaded = Stack::load(options_.preset, wanted, said_);
+    loading_ = false;
+    printed_.end(loaded.ok());
+    AFTERGLOW_TRY(auto later, std::move(loaded));
     later->use(*device_.device, !options_.commands);
     if (stack_) later->take_over(*stack_, true);
     stack_ = std::move(later);
@@ -49,9 +70,18 @@ class Loaded : public Source {
     return {};
   }
 
+  /// Each setting that is set runs the preset again, which prints what it printed before.
+  void tell(Severity severity, const std::string& message) {
+    if (severity == Severity::warning) return diagnostics_.warn(message);
+    if (!loading_ || printed_.is_new(message)) diagnostics_.note(message);
+  }
+
   SharedDevice& device_;
   BackendOptions options_;
   Diagnostics& diagnostics_;
+  Diagnostics said_{[this](Severity severity, const std::string& message) { tell(severity, message); }};
+  NewMessages printed_;
+  bool loading_ = false;
   std::unique_ptr<Stack> stack_;
 };
 
@@ -68,7 +98,7 @@ class Followed : public Source {
     live.notify = options_.wake;
     AFTERGLOW_TRY(live_, LiveStack::open(*device.device, options_.preset, live, silent_));
     if (!live_->stack()) return failed();
-    tell_warnings();
+    tell_messages();
     return {};
   }
 
@@ -87,7 +117,7 @@ class Followed : public Source {
 
   Result<bool> update() override {
     if (live_->update()) {
-      tell_warnings();
+      tell_messages();
       return true;  // what is wrong with a later edit is said the next time
     }
     const LiveStatus status = live_->status();
@@ -111,7 +141,7 @@ class Followed : public Source {
     live_->set_context(shape.context, shape.encoding);
     if (new_shape) {
       live_->settle();
-      if (live_->update()) tell_warnings();
+      if (live_->update()) tell_messages();
     }
     AFTERGLOW_TRY(auto build, live_->stack()->evaluate(shape.context));
     live_->also_follow(build->files);
@@ -127,7 +157,7 @@ class Followed : public Source {
   }
   Result<void> settle() {
     live_->settle();
-    if (live_->update()) tell_warnings();
+    if (live_->update()) tell_messages();
     const LiveStatus status = live_->status();
     told_error_ = status.error ? status.error->text() : "";
     return status.error ? failed() : Result<void>();
@@ -136,21 +166,23 @@ class Followed : public Source {
     const LiveStatus status = live_->status();
     return status.error ? *status.error : Error{ErrorKind::script, "the preset cannot be loaded"};
   }
-  /// Those that were not told of the stack before.
-  void tell_warnings() {
-    std::vector<std::string> warnings = live_->status().warnings;
-    for (const auto& warning : warnings)
-      if (std::ranges::find(told_, warning) == told_.end()) diagnostics_.warn(warning);
-    told_ = std::move(warnings);
+  void tell_messages() {
+    const LiveStatus status = live_->status();
+    for (const auto& note : status.notes)
+      if (printed_.is_new(note)) diagnostics_.note(note);
+    printed_.end(true);
+    for (const auto& warning : status.warnings)
+      if (warned_.is_new(warning)) diagnostics_.warn(warning);
+    warned_.end(true);
   }
 
   BackendOptions options_;
   Diagnostics& diagnostics_;
-  Diagnostics silent_;  ///< warnings of builds come with the status of the one that is shown
+  Diagnostics silent_;  ///< messages of builds come with the status of the one that is shown
   std::unique_ptr<LiveStack> live_;
   std::optional<BuildContext> context_;
   std::optional<DisplayEncoding> encoding_;
-  std::vector<std::string> told_;
+  NewMessages printed_, warned_;
   std::string told_error_;
 };
 

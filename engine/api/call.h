@@ -8,6 +8,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "api/afterglow.h"
@@ -54,6 +55,14 @@ inline afterglow_string view(const std::string& text) { return {text.c_str(), te
 inline bool is_given(afterglow_string text) { return text.data != nullptr; }
 inline std::string text_of(afterglow_string text) {
   return text.data ? std::string(text.data, text.size) : std::string();
+}
+
+/// A path of the caller's, absolute: a host may change its working directory later. Empty: none is given.
+inline std::filesystem::path path_of(afterglow_string text) {
+  std::filesystem::path given = text_of(text);
+  std::error_code unknown;
+  std::filesystem::path absolute = given.empty() ? given : std::filesystem::absolute(given, unknown);
+  return unknown ? given : absolute;
 }
 
 /// Hands a text over to the caller.

@@ -31,7 +31,7 @@ afterglow_error* afterglow_device_open(const afterglow_device_options* options, 
     if (is_given(given.device)) wanted.device = text_of(given.device);
     wanted.validate = given.validate;
     return make(given.message, given.user, out,
-                [&](SharedDevice& device) { return device.open(wanted, text_of(given.cache_folder)); });
+                [&](SharedDevice& device) { return device.open(wanted, path_of(given.cache_folder)); });
   });
 }
 
@@ -47,7 +47,7 @@ afterglow_error* afterglow_device_adopt(const afterglow_adopted_device* adopted,
                                 .queue_family = given.queue_family,
                                 .get_instance_proc_addr = given.get_instance_proc_addr};
     return make(given.message, given.user, out,
-                [&](SharedDevice& device) { return device.adopt(objects, text_of(given.cache_folder)); });
+                [&](SharedDevice& device) { return device.adopt(objects, path_of(given.cache_folder)); });
   });
 }
 

@@ -14,7 +14,7 @@ struct afterglow_device {
 
 struct afterglow_stack {
   std::unique_ptr<afterglow::api::Backend> backend;
-  afterglow::api::Mended mended = 0;  ///< in the last frame
+  afterglow::api::MendedImages mended{};  ///< in the last frame
 };
 
 namespace afterglow::api {

@@ -2,6 +2,7 @@
 // Pictures of the caller as rows of floats, and rows of results as the caller's samples.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 
@@ -32,11 +33,30 @@ enum class ImageRole { color, depth, normal, motion };
 /// Errors (usage): no picture is so small or so large.
 Result<void> check_size(Size size);
 
-/// Errors (usage): no data, sizes, channels or samples that the role does not allow, strides shorter than a pixel or a row, or beyond all memory.
+/// Errors (usage): no data, sizes, channels or samples that the role does not allow, strides shorter than a pixel or a
+/// row, or beyond all memory.
 Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const char* name);
 
 /// Samples that had to be made finite, or were negative colours. Thread-safe.
 using Mended = std::atomic<std::uint64_t>;
+
+/// Of each image of a frame.
+class MendedImages {
+ public:
+  Mended& operator[](ImageRole role) { return counts_[static_cast<std::size_t>(role)]; }
+  std::uint64_t operator[](ImageRole role) const { return counts_[static_cast<std::size_t>(role)]; }
+  std::uint64_t sum() const {
+    std::uint64_t all = 0;
+    for (const Mended& count : counts_) all += count;
+    return all;
+  }
+  void clear() {
+    for (Mended& count : counts_) count = 0;
+  }
+
+ private:
+  std::array<Mended, 4> counts_{};
+};
 
 /// The picture as an input of a frame. Colour comes as RGBA, scene-linear, alpha associated, finite and ≥ 0. `mended`
 /// and what `pixels` points at must outlive it.

@@ -68,6 +68,8 @@ namespace {
 Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (!is_given(given.preset_file) && !is_given(given.preset_text))
     return usage("afterglow_stack_options: neither preset_file nor preset_text is given");
+  if (is_given(given.preset_file) && given.preset_file.size == 0)
+    return usage("afterglow_stack_options: preset_file is empty; allowed: a file, a pack or the name of a preset");
   if (given.follow && is_given(given.preset_text))
     return usage("afterglow_stack_options: a preset_text cannot be followed");
   if (given.path_count > 0 && !given.paths) return usage("afterglow_stack_options: paths is NULL");
@@ -75,17 +77,19 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (!(given.max_error >= 0)) return usage("afterglow_stack_options: max_error must not be negative");
 
   BackendOptions out;
-  for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(text_of(given.paths[i]));
+  for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(path_of(given.paths[i]));
   for (std::size_t i = 0; i < given.argument_count; ++i) {
     AFTERGLOW_TRY(out.stack.preset.arguments.emplace_back(), parse_argument(text_of(given.arguments[i])));
   }
-  out.stack.preset.installation = text_of(given.installation);
+  out.stack.preset.installation = path_of(given.installation);
   if (is_given(given.preset_text)) {
     out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";
+    if (out.preset.has_parent_path()) out.preset = path_of(given.preset_file);  // else a name for messages alone
     out.stack.preset.text = text_of(given.preset_text);
   } else {
-    AFTERGLOW_TRY(out.preset,
+    AFTERGLOW_TRY(const std::filesystem::path found,
                   find_preset_file(text_of(given.preset_file), out.stack.preset.paths, out.stack.preset.installation));
+    out.preset = path_of(view(found.string()));
   }
   switch (given.precision) {
     case AFTERGLOW_PRECISION_AUTOMATIC:
@@ -103,7 +107,7 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
     return usage("afterglow_stack_options: unknown use");
   if (given.max_error > 0) out.stack.max_error = given.max_error;
   if (given.max_memory > 0) out.stack.max_memory = given.max_memory;
-  out.stack.calibration = text_of(given.calibration);
+  out.stack.calibration = path_of(given.calibration);
   out.stack.reference = given.reference;
   out.commands = given.use == AFTERGLOW_USE_COMMANDS;
   out.follow = given.follow;
@@ -111,6 +115,17 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   out.message = sink_of(given.message, given.user);
   if (given.wake) out.wake = [wake = given.wake, user = given.user] { wake(user); };
   return out;
+}
+
+/// Of each image once.
+void tell_what_was_mended(const MendedImages& mended, Diagnostics& diagnostics) {
+  const auto tell = [&](ImageRole role, const char* what) {
+    if (const std::uint64_t count = mended[role]) diagnostics.warn_once(what, fmt::format(fmt::runtime(what), count));
+  };
+  tell(ImageRole::color, "the source has {} samples that are not finite or negative; they were mended");
+  tell(ImageRole::depth, "image 'depth' has {} pixels that are not finite; they count as far away");
+  tell(ImageRole::normal, "image 'normal' has {} pixels that are not finite; they count as without a normal");
+  tell(ImageRole::motion, "image 'motion' has {} pixels that are not finite; they count as at rest");
 }
 
 struct Input {
@@ -124,7 +139,7 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   if (backend.options().commands)
     return usage(
         "afterglow_stack_run: the stack was made with AFTERGLOW_USE_COMMANDS; allowed: afterglow_stack_record");
-  stack.mended = 0;
+  stack.mended.clear();
   AFTERGLOW_TRY(const Pixels source, check_image(info.source, ImageRole::color, "source"));
   AFTERGLOW_TRY(const Pixels result, check_image(info.result, ImageRole::color, "result"));
   const auto same_size = [&](const Pixels& image, const char* name) -> Result<void> {
@@ -137,14 +152,15 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   Shape shape;
   AFTERGLOW_TRY(shape.context, context_of(info.frame, source.size));
   AFTERGLOW_TRY(shape.region, region_of(info.region, source.size));
-  std::map<std::string, HostImage> inputs{{"source", input_image(source, ImageRole::color, stack.mended)}};
+  std::map<std::string, HostImage> inputs{
+      {"source", input_image(source, ImageRole::color, stack.mended[ImageRole::color])}};
   for (const Input& input :
        {Input{"depth", &info.depth, ImageRole::depth}, Input{"normal", &info.normal, ImageRole::normal},
         Input{"motion", &info.motion, ImageRole::motion}}) {
     if (!input.image->data) continue;
     AFTERGLOW_TRY(const Pixels pixels, check_image(*input.image, input.role, input.name));
     AFTERGLOW_CHECK(same_size(pixels, input.name));
-    inputs[input.name] = input_image(pixels, input.role, stack.mended);
+    inputs[input.name] = input_image(pixels, input.role, stack.mended[input.role]);
     shape.context.auxiliary[input.name] = pixels.size;
   }
   if (result.samples == AFTERGLOW_UINT8)
@@ -155,9 +171,7 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
                                  .region = shape.region.value_or(Rect{0, 0, source.size.width, source.size.height}),
                                  .dither = info.dither});
   AFTERGLOW_CHECK(backend.run(shape, inputs, rows));
-  if (const std::uint64_t count = stack.mended)
-    backend.diagnostics().warn_once(
-        "mended", fmt::format("the source has {} samples that are not finite or negative; they were mended", count));
+  tell_what_was_mended(stack.mended, backend.diagnostics());
   return {};
 }
 
@@ -247,6 +261,6 @@ afterglow_error* afterglow_stack_explain(const afterglow_stack* stack, afterglow
 afterglow_error* afterglow_stack_report(const afterglow_stack* stack, afterglow_text** out) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_report"));
-    return give(report_document(backend->report(), stack->mended), out, "afterglow_stack_report");
+    return give(report_document(backend->report(), stack->mended.sum()), out, "afterglow_stack_report");
   });
 }

@@ -97,7 +97,7 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
 
 void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std::vector<bool>& run) const {
   const State& s = *state_;
-  if (s.bindings == 0) return;
+  if (!bound()) return;
   const std::size_t count = s.plan.kernels.size();
   const auto stamp = [&](std::size_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
@@ -129,6 +129,7 @@ std::vector<std::string> Program::warnings() const {
       if (std::ranges::find(all, warning) == all.end()) all.push_back(warning);
   return all;
 }
+bool Program::bound() const { return state_->bindings > 0; }
 int Program::bindings() const { return state_->bindings + state_->uses; }
 VkFormat Program::storage_format() const { return state_->format; }
 const ExecutionConfig& Program::config() const { return state_->options.config; }

@@ -128,7 +128,11 @@ class Program {
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result);
 
-  /// How often images were bound so far. Commands that were recorded before the last time must not be submitted again.
+  /// Whether `bind` has said which images `record` reads and writes.
+  bool bound() const;
+
+  /// How often images were bound so far, those of histories too. Commands that were recorded before the last time must
+  /// not be submitted again.
   int bindings() const;
 
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible

@@ -166,7 +166,8 @@ LiveStatus LiveStack::status() const {
   }
   if (!heard) return status;
   const std::lock_guard lock(heard->mutex);
-  status.warnings = heard->messages;
+  status.warnings = heard->warnings;
+  status.notes = heard->notes;
   return status;
 }
 

@@ -59,6 +59,7 @@ struct LiveStatus {
   std::uint64_t generation = 0;  ///< of the stack that is shown; grows with each change that `update` took; 0: none yet
   bool building = false;         ///< or about to
   std::vector<std::string> warnings;  ///< of the build that is shown; overrides that do not fit are among them
+  std::vector<std::string> notes;     ///< of that build: what its scripts have printed, but not in frames since
   BuildTimes times;                   ///< of the last build that `update` took
   std::string watching;  ///< how files are followed: "inotify", "polling every 500 ms: …", "" when they are not
 

@@ -166,7 +166,10 @@ BuiltStack LiveBuilder::new_stack() {
   auto diagnostics = std::make_unique<Diagnostics>([this, heard](Severity severity, const std::string& message) {
     {
       const std::lock_guard lock(heard->mutex);
-      if (severity == Severity::warning) heard->messages.push_back(message);
+      if (severity == Severity::warning)
+        heard->warnings.push_back(message);
+      else if (!heard->built)
+        heard->notes.push_back(message);
     }
     {
       const std::lock_guard lock(said_mutex_);
@@ -322,7 +325,8 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
   {
     const std::lock_guard lock(said_mutex_);
     const std::lock_guard heard_lock(built.heard->mutex);
-    said_ = {built.heard->messages.begin(), built.heard->messages.end()};
+    said_ = {built.heard->warnings.begin(), built.heard->warnings.end()};
+    built.heard->built = true;
   }
   BuiltParts old;
   {

@@ -33,7 +33,9 @@ struct LiveRequest {
 /// What the scripts of one build have said.
 struct Heard {
   std::mutex mutex;
-  std::vector<std::string> messages;
+  std::vector<std::string> warnings;  ///< in frames too, each once
+  std::vector<std::string> notes;     ///< until it was built: a frame may print whatever it likes, each time
+  bool built = false;
 };
 
 /// A stack with what it needs to live.

@@ -186,7 +186,9 @@ Result<FrameWork> Stack::work(const FrameRequest& frame) {
                  .restart = frame.restart};
   state_->cut(work.graph);
   AFTERGLOW_CHECK(validate(work.graph));
-  work.unorm8 = frame.encoding && !state_->options.reference && work.runs();
+  // Where nothing else runs, whoever has pictures encodes them; who records has nothing but what is recorded.
+  const bool records = state_->programs && !state_->programs->options().own_images;
+  work.unorm8 = frame.encoding && !state_->options.reference && (work.runs() || records);
   if (work.unorm8) encode_for_display(work.graph, *frame.encoding);
   AFTERGLOW_TRY(work.texts, texts_of(work.graph, *state_->shaders));
   return work;

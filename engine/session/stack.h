@@ -110,7 +110,8 @@ class Stack {
                        const std::optional<Rect>& region = {});
   /// Of the last `prepare` or `request`; null before it.
   const std::shared_ptr<const Build>& build() const;
-  /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
+  /// False when no effect has anything to do: the result *is* the source, and `record` records nothing. A display
+  /// encoding is something to do, unless a Renderer runs the stack (`use` with `own_images`).
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.
   Program* program() const;

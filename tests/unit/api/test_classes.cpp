@@ -77,6 +77,27 @@ TEST_F(ClassesTest, ADeviceThatIsReplacedEndsBeforeItsSink) {
   EXPECT_THAT(device.describe(), HasSubstr("\"name\""));
 }
 
+TEST_F(ClassesTest, NumbersOfAllTypesAreSet) {
+  const Device device;
+  Stack stack(device, file("look.lua"));
+  const auto becomes = [&](auto value) {
+    stack.set("gain.amount", value);
+    return stack.get_number("gain.amount");
+  };
+  enum Times { kFive = 5 };
+  EXPECT_EQ(becomes(1), 1);
+  EXPECT_EQ(becomes(2u), 2);
+  EXPECT_EQ(becomes(3l), 3);
+  EXPECT_EQ(becomes(std::size_t{4}), 4);
+  EXPECT_EQ(becomes(kFive), 5);
+  EXPECT_EQ(becomes(std::uint8_t{6}), 6);
+  EXPECT_EQ(becomes(0.5f), 0.5);
+  stack.set("gain.off", true);
+  EXPECT_TRUE(stack.get_boolean("gain.off"));
+  stack.set("gain.way", "twice");
+  EXPECT_EQ(stack.get_text("gain.way"), "twice");
+}
+
 TEST_F(ClassesTest, ArgumentsAreGiven) {
   write("look.lua",
         "local fx = require 'afterglow'\nlocal args = fx.args { strength = fx.float { default = 2, min = 0, max = 9, "

@@ -25,15 +25,34 @@ TEST_F(CommandsTest, TheOrderOfCallsIsKept) {
   auto* commands = reinterpret_cast<VkCommandBuffer>(1);  // never reached
   const ErrorPtr early(afterglow_stack_record(stack.get(), commands));
   EXPECT_THAT(text_of(early.get()), HasSubstr("afterglow_stack_prepare first"));
+  const afterglow_bindings nothing = afterglow_bindings_default();
+  const ErrorPtr bound_early(afterglow_stack_bind(stack.get(), &nothing));
+  EXPECT_EQ(afterglow_error_get_kind(bound_early.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_THAT(text_of(bound_early.get()), HasSubstr("afterglow_stack_prepare first"));
   const afterglow_shape wanted = shape();
   ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
   EXPECT_TRUE(afterglow_stack_runs(stack.get()));
   const ErrorPtr unbound(afterglow_stack_record(stack.get(), commands));
   EXPECT_THAT(text_of(unbound.get()), HasSubstr("afterglow_stack_bind first"));
-  const afterglow_bindings nothing = afterglow_bindings_default();
   EXPECT_TRUE(ErrorPtr(afterglow_stack_bind(stack.get(), &nothing)));
   EXPECT_EQ(afterglow_error_get_kind(ErrorPtr(afterglow_stack_record(stack.get(), nullptr)).get()),
             AFTERGLOW_ERROR_USAGE);
+}
+
+/// Also where effects look back: their programs are given images of histories, which are not the caller's.
+TEST_F(CommandsTest, WhatIsNewWantsToBeBound) {
+  look("fx.auto_exposure { enabled = false }");
+  const StackPtr stack = this->stack(recording());
+  const afterglow_shape wanted = shape();
+  const afterglow_bindings nothing = afterglow_bindings_default();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  ASSERT_TRUE(fine(afterglow_stack_bind(stack.get(), &nothing))) << "nothing runs";
+  ASSERT_TRUE(fine(afterglow_stack_set_boolean(stack.get(), str("auto_exposure.enabled"), true)));
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+  const ErrorPtr unbound(afterglow_stack_record(stack.get(), reinterpret_cast<VkCommandBuffer>(1)));
+  EXPECT_EQ(afterglow_error_get_kind(unbound.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_THAT(text_of(unbound.get()), HasSubstr("afterglow_stack_bind first"));
 }
 
 TEST_F(CommandsTest, WhatIsPreparedOutlastsFailures) {
@@ -95,6 +114,24 @@ TEST_F(CommandsTest, TheResultsFormatIsTold) {
   wanted.display_codes = true;
   ASSERT_TRUE(fine(afterglow_stack_prepare(codes.get(), &wanted, nullptr)));
   EXPECT_EQ(afterglow_stack_result_format(codes.get()), VK_FORMAT_R8G8B8A8_UNORM);
+}
+
+/// Whoever switches the last effect off still has codes.
+TEST_F(CommandsTest, CodesAreMadeWhereNoEffectRuns) {
+  look("fx.gain { off = true }");
+  const StackPtr stack = this->stack(recording());
+  afterglow_shape wanted = shape();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  EXPECT_FALSE(afterglow_stack_runs(stack.get()));
+  wanted.display_codes = true;
+  for (const bool straight : {false, true})
+    for (const bool dither : {false, true}) {
+      wanted.straight_alpha = straight;
+      wanted.dither = dither;
+      ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+      EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+      EXPECT_EQ(afterglow_stack_result_format(stack.get()), VK_FORMAT_R8G8B8A8_UNORM);
+    }
 }
 
 TEST_F(CommandsTest, AdoptedDevicesAreChecked) {

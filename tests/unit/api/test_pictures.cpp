@@ -213,6 +213,46 @@ TEST_F(PictureTest, WhatIsNotFiniteIsMendedAndTold) {
   EXPECT_THAT(messages_[0], HasSubstr("3 samples"));
 }
 
+TEST_F(PictureTest, EachImageThatIsMendedIsNamed) {
+  write("effects/all.lua", R"(
+    local fx = require "afterglow"
+    return fx.effect {
+      name = "all", doc = "Reads everything.", at = "post_process", order = 0, needs = { "depth", "normal", "motion" },
+      settings = {},
+      build = function(g, s, source)
+        return g:pass { shader = "gain/all", source = source, depth = g:input("depth"), normal = g:input("normal"),
+                        motion = g:input("motion") }
+      end,
+    })");
+  write("shaders/gain/all.glsl",
+        "uniform sampler2D source;\nuniform sampler2D depth;\nuniform sampler2D normal;\nuniform sampler2D motion;\n"
+        "vec4 sample_at(ivec2 pixel) { return fetch(source, pixel) + vec4(min(fetch(depth, pixel).r, 1.0), "
+        "fetch(normal, pixel).r, fetch(motion, pixel).r, 0); }\n");
+  look("fx.all {}");
+  const StackPtr stack = this->stack(listening());
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> source(4 * 4, 0.5f), result(source.size()), depth(4, 1), normal(4 * 4, 0), motion(4 * 4, 0);
+  depth[0] = depth[1] = depth[2] = kNan;
+  normal[1] = normal[5] = kNan;
+  motion[0] = kNan;
+  afterglow_run_info info = afterglow_run_info_default();
+  info.source = image(source, 2, 2);
+  info.result = image(result, 2, 2);
+  info.depth = image(depth, 2, 2, 1);
+  info.normal = image(normal, 2, 2);  // more channels than are read may lie beside each other
+  info.motion = image(motion, 2, 2);
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  EXPECT_EQ(result[0], 1.5f);
+  EXPECT_EQ(json_of(afterglow_stack_report, stack.get())["mended_samples"], 6);
+  EXPECT_THAT(messages_,
+              testing::ElementsAre(HasSubstr("image 'depth' has 3 pixels"), HasSubstr("image 'normal' has 2 pixels"),
+                                   HasSubstr("image 'motion' has 1 pixels")));
+  source[0] = -1;
+  ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  ASSERT_EQ(messages_.size(), 4u);
+  EXPECT_THAT(messages_[3], HasSubstr("the source has 1 samples"));
+}
+
 TEST_F(PictureTest, DepthIsReadWhereALookNeedsIt) {
   look("fx.fog {}");
   const StackPtr stack = this->stack();

@@ -143,6 +143,89 @@ TEST_F(ReloadTest, WhatThePresetNoLongerHasIsLeftOut) {
   }
 }
 
+/// What a preset prints is told once, and again when it prints something else.
+TEST_F(ReloadTest, WhatScriptsPrintIsTold) {
+  const auto printing = [&](const char* word) {
+    write("look.lua", std::string("local fx = require \"afterglow\"\nprint(\"") + word +
+                          "\")\nreturn fx.stack { fx.gain { amount = 2 } }\n");
+  };
+  for (const bool follow : {false, true}) {
+    printing("first");
+    afterglow_stack_options options = listening();
+    messages_.clear();
+    options.follow = follow;
+    const StackPtr stack = this->stack(options);
+    EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("look.lua:2: first")));
+    EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+    for (const double amount : {3.0, 4.0, 5.0})
+      ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), amount)));
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_set_number(stack.get(), str("gain.amonut"), 1)));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.5f);
+    EXPECT_EQ(messages_.size(), 1u);
+    printing("second");
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("first"), HasSubstr("look.lua:2: second")));
+  }
+}
+
+/// Paths that are given are those of the working directory at that time.
+TEST_F(ReloadTest, AHostMayChangeItsWorkingDirectory) {
+  const fs::path home = fs::current_path();
+  fs::create_directories(file("here"));
+  fs::create_directories(file("more"));
+  fs::rename(file("effects"), file("more/effects"));
+  fs::rename(file("shaders"), file("more/shaders"));
+  fs::create_directory_symlink(AFTERGLOW_PROJECT_FOLDER, file("installation"));
+  const std::string text = "local fx = require 'afterglow'\nreturn fx.stack { fx.gain { amount = 2 } }\n";
+  for (const bool follow : {false, true})
+    for (const bool of_text : {false, true}) {
+      if (follow && of_text) continue;
+      SCOPED_TRACE(testing::Message() << follow << of_text);
+      look("fx.gain { amount = 2 }");
+      fs::current_path(file("here"));
+      const afterglow_string more = afterglow_str("../more");
+      afterglow_stack_options options = afterglow_stack_options_default();
+      options.preset_file = afterglow_str("../look.lua");
+      if (of_text) options.preset_text = str(text);
+      options.paths = &more;
+      options.path_count = 1;
+      options.installation = afterglow_str("../installation");
+      options.follow = follow;
+      const StackPtr stack = this->stack(options);
+      fs::current_path(folder_);
+      EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+      EXPECT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 8)));
+      EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
+      EXPECT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str(nullptr))));
+      look("fx.gain { amount = 4 }");
+      EXPECT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+      EXPECT_FLOAT_EQ(first_sample(stack), of_text ? 1.0f : 2.0f);
+      fs::current_path(home);
+    }
+}
+
+TEST_F(ReloadTest, ADevicesCacheStaysWhereItWas) {
+  const fs::path home = fs::current_path();
+  fs::create_directories(file("here"));
+  fs::create_directories(file("there"));
+  fs::current_path(file("here"));
+  afterglow_device_options options = afterglow_device_options_default();
+  options.cache_folder = afterglow_str("cache");
+  afterglow_device* device = nullptr;
+  ASSERT_TRUE(fine(afterglow_device_open(&options, &device)));
+  fs::current_path(file("there"));
+  const std::string look = file("look.lua");
+  afterglow_stack_options wanted = afterglow_stack_options_default();
+  wanted.preset_file = str(look);
+  afterglow_stack* made = nullptr;
+  EXPECT_TRUE(fine(afterglow_stack_create(device, &wanted, &made)));
+  EXPECT_FLOAT_EQ(first_sample(StackPtr(made)), 1.0f);
+  afterglow_device_free(device);
+  fs::current_path(home);
+  EXPECT_TRUE(fs::exists(file("here/cache/shaders")));
+  EXPECT_TRUE(fs::is_empty(file("there")));
+}
+
 TEST_F(ReloadTest, APresetMayBeAText) {
   afterglow_stack_options options = afterglow_stack_options_default();
   const std::string name = file("never_written.lua");
@@ -162,7 +245,17 @@ TEST_F(ReloadTest, APresetMayBeAText) {
   EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
   EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
 
-  options.preset_text = str("return nil");
+  options.preset_text = afterglow_str("return nil");
+  options.preset_file = afterglow_str("a look of mine");
+  EXPECT_EQ(str(afterglow_error_get_file(broken(options).get())), "a look of mine");
+  options.preset_file = afterglow_str("");
+  EXPECT_THAT(text_of(broken(options).get()), HasSubstr("preset_file is empty"));
+  options.preset_text = {};
+  const ErrorPtr empty = broken(options);
+  EXPECT_EQ(afterglow_error_get_kind(empty.get()), AFTERGLOW_ERROR_USAGE);
+  options.preset_file = str(name);
+
+  options.preset_text = afterglow_str("return nil");
   options.follow = true;
   EXPECT_EQ(afterglow_error_get_kind(broken(options).get()), AFTERGLOW_ERROR_USAGE);
 }
