@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -90,12 +91,37 @@ Result<std::string> first_bytes(PatientReader& from) {
   return std::string(bytes.data(), have);
 }
 
+/// Looks for a second PNG behind the first, as bytes come: `run -o - --format png` writes them so, and only the first
+/// would be read.
+class PngEnd {
+ public:
+  explicit PngEnd(std::string_view head) : is_png_(head.starts_with(kSignature)) {}
+
+  /// True: another picture begins in what came.
+  bool another(std::string_view bytes) {
+    if (!is_png_) return false;
+    const std::string text = kept_ + std::string(bytes);
+    constexpr std::string_view kNext = "IEND\xae\x42\x60\x82\x89PNG"sv;
+    if (text.find(kNext) != std::string::npos) return true;
+    kept_ = text.substr(text.size() - std::min(text.size(), kNext.size()));
+    return false;
+  }
+
+ private:
+  static constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n"sv;
+  bool is_png_;
+  std::string kept_;  ///< the end of what came before
+};
+
 Result<std::shared_ptr<const MemoryFile>> whole_file(PatientReader& from, const std::string& head,
                                                      const SizeLimits& limits) {
   AFTERGLOW_TRY(MemoryFile file, MemoryFile::create());
   const FileDescriptor out(::open(file.name().c_str(), O_WRONLY | O_CLOEXEC));
   std::uint64_t size = 0;
+  PngEnd end(head);
   const auto put = [&](const char* bytes, std::size_t count) -> Result<void> {
+    if (end.another({bytes, count}))
+      return in_stream("holds several PNGs; frames come as PPM, PAM, PFM, Y4M or a video");
     size += count;
     if (size > limits.max_bytes) return in_stream("is larger than --max-memory allows");
     while (count > 0) {

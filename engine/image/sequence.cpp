@@ -59,14 +59,12 @@ Result<Range> parse_range(const std::string& text, std::string_view part) {
   return range;
 }
 
-/// A file's own number: the digits at the end of its name's stem; 1 without them.
+/// A file's own number, at the end of its name's stem; 1 without one.
 int own_number(const fs::path& file) {
   const std::string stem = file.stem().string();
-  std::size_t begin = stem.size();
-  while (begin > 0 && is_digit(stem[begin - 1])) --begin;
-  const std::string_view digits = std::string_view(stem).substr(begin);
-  if (digits.empty() || digits.size() > kMaxDigits) return 1;
-  return std::stoi(std::string(digits));
+  const std::string number = stem.substr(number_begin(stem, stem.size()));
+  const std::size_t digits = number.size() - (number.starts_with('-') ? 1 : 0);
+  return digits == 0 || digits > kMaxDigits ? 1 : std::stoi(number);
 }
 
 /// One place for a number in a name: where, how long its text is, and how many digits it asks for.
@@ -81,6 +79,14 @@ Error bad_pattern(const std::string& text, const std::string& why) {
 }
 
 }  // namespace
+
+std::size_t number_begin(std::string_view name, std::size_t end) {
+  std::size_t begin = end;
+  while (begin > 0 && is_digit(name[begin - 1])) --begin;
+  const bool sign = begin < end && begin > 0 && name[begin - 1] == '-' &&
+                    (begin == 1 || name[begin - 2] == '.' || name[begin - 2] == '_');
+  return sign ? begin - 1 : begin;
+}
 
 Result<std::vector<int>> parse_frames(const std::string& text) {
   std::vector<int> frames;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
@@ -23,6 +24,10 @@ struct Pattern {
 };
 /// Errors: usage (two places, an unknown % code).
 Result<Pattern> parse_pattern(const std::string& text);
+
+/// Where the number that ends at `end` of a name begins; at `end` where there is none. A minus sign belongs to it behind
+/// a point, an underscore or nothing: "shot.-002", but not "shot-2".
+std::size_t number_begin(std::string_view name, std::size_t end);
 
 struct FrameFile {
   int frame = 0;

@@ -31,8 +31,7 @@ void note_name(NumberedGroups& groups, const fs::path& file) {
   if (name.starts_with('.') || name.find('#') != std::string::npos) return;
   std::size_t end = stem.size();
   while (end > 0 && !is_number(stem[end - 1])) --end;
-  std::size_t begin = end;
-  while (begin > 0 && is_number(stem[begin - 1])) --begin;
+  const std::size_t begin = number_begin(stem, end);
   if (begin == end || end - begin > kMostFrameDigits) return;
   Numbered& group = groups[{name.substr(0, begin), name.substr(end)}];
   group.digits = std::min(group.digits, end - begin);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -237,11 +236,7 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
 
   // Each row does the same, so one is looked at. What variables of file scope hold is only seen in one function.
   if (globals.empty() || !inlines_quickly(module)) forbid_inlining(module, function_named(module, kRowFunction));
-  if (!inlines_quickly(module)) {  // any of them may be read
-    std::vector<std::uint32_t> all(unset.size());
-    std::iota(all.begin(), all.end(), 0u);
-    return all;
-  }
+  if (!inlines_quickly(module)) return {};  // a word too few is better than one that is wrong
   // Functions with several returns are not inlined; what they write is not seen then.
   spvtools::Optimizer optimizer(kSpirvEnvironment);
   optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass()).RegisterPass(spvtools::CreateMergeReturnPass());

@@ -132,7 +132,7 @@ vec4 sample_at(ivec2 pixel) {
       float inside = is_first ? covered(float(i), first.steps) : -1.0;
       float aside = float(i) * (is_first ? first.slope : second.slope), whole = floor(aside), rest = aside - whole;
       ivec2 to = i * along + int(whole) * across;
-      vec2 counts = (clear - clear * clear + 1e-3) / float(i * i), leaves;
+      vec2 counts = (clear - clear * clear + 1e-3) / float(i * i), leaves = vec2(0.0);
       leaves.x = count(sums, counts.x, stirs, pixel + to, 1.0 - rest, float(i), inside, per_step, own, way, two);
       leaves.x += count(sums, counts.x, stirs, pixel + to + across, rest, float(i), inside, per_step, own, way, two);
       leaves.y = count(sums, counts.y, stirs, pixel - to, 1.0 - rest, float(i), inside, per_step, own, way, two);

@@ -82,6 +82,9 @@ TEST(Pattern, NothingFound) {
 TEST(Pattern, PlainFilesHaveTheirOwnNumber) {
   EXPECT_EQ(find_frames({"a/shot.0012.exr", "", 0, false}, std::nullopt).value()[0].frame, 12);
   EXPECT_EQ(find_frames({"a/still.exr", "", 0, false}, std::nullopt).value()[0].frame, 1);
+  EXPECT_EQ(find_frames({"a/shot.-002.exr", "", 0, false}, std::nullopt).value()[0].frame, -2);
+  EXPECT_EQ(find_frames({"a/shot_-2.exr", "", 0, false}, std::nullopt).value()[0].frame, -2);
+  EXPECT_EQ(find_frames({"a/2026-11-02.exr", "", 0, false}, std::nullopt).value()[0].frame, 2);
   EXPECT_EQ(find_frames({"a/20261121000000000000.exr", "", 0, false}, std::nullopt).value()[0].frame, 1);
 }
 
@@ -89,6 +92,13 @@ TEST(Pattern, AFileThatOnlyLooksLikeAPattern) {
   const TemporaryFolder folder;
   std::ofstream(folder / "take#2.exr") << "x";
   EXPECT_FALSE(parse_pattern((folder / "take#2.exr").string()).value().numbered);
+}
+
+TEST(Pattern, FramesBeforeZeroAreOfTheSequence) {
+  const TemporaryFolder folder;
+  for (const char* name : {"n.-002.exr", "n.-001.exr", "n.0000.exr", "n.0001.exr"}) std::ofstream(folder / name) << "x";
+  EXPECT_EQ(sequence_in(folder.path()).value(), folder / "n.####.exr");
+  EXPECT_EQ(sequence_around(folder / "n.-001.exr").value().frame, -1);
 }
 
 TEST(Pattern, AFrameHasItsSequenceAroundIt) {
