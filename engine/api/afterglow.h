@@ -15,14 +15,19 @@
  * unless the function says otherwise.
  *
  * Strings: what is passed in is a view; it need not end with NUL and is copied where it is kept. What comes out is a
- * view into the object it was asked of, valid as long as that object; a NUL follows its last byte. All are UTF-8.
- * Relative paths are those of the working directory of that call; it may change later.
+ * view into the object it was asked of, valid as long as that object; a NUL follows its last byte. All are UTF-8: where
+ * a file's name or a script's text is not, what comes out has U+FFFD in its place. Names of files that are passed in
+ * may be any bytes; relative paths are those of the working directory of that call, which may change later.
  *
  * Structures: the first member says how large the structure was when the caller was compiled. The functions
  * afterglow_..._default() fill it in, with defaults for the rest. Later versions add members at the end.
  *
  * Threads: each function says what it allows. "One thread at a time" is meant for the object given: two stacks may be
  * used on two threads at once, also on one device.
+ *
+ * Processes: after fork() devices and stacks are the parent's. In the child functions return device errors, and those
+ * that free do nothing. It may open devices of its own, and then ends by _exit(): drivers have exit handlers that wait
+ * for threads of the parent.
  *
  * The library has no global state, prints nothing, installs no signal handler and never ends the process. Messages
  * that are no errors go to a callback.
@@ -127,9 +132,10 @@ typedef void (*afterglow_wake_callback)(void *user);
 
 typedef struct afterglow_device_options {
   size_t struct_size;
-  afterglow_string device;       /* "auto", an index, or a part of a name or uuid; not given: "auto" */
-  bool validate;                 /* load the Khronos validation layer; its messages go to `message` */
-  afterglow_string cache_folder; /* compiled shaders and pipelines are kept there; not given: nowhere */
+  afterglow_string device; /* "auto", an index, or a part of a name or uuid; not given: "auto" */
+  bool validate;           /* load the Khronos validation layer; its messages go to `message` */
+  /* Compiled shaders and pipelines are kept there; not given: nowhere. One that cannot be written to is a warning. */
+  afterglow_string cache_folder;
   afterglow_message_callback message;
   void *user; /* for `message`; must outlive the device and its stacks */
 } afterglow_device_options;

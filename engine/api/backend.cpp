@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/cache_folder.h"
+
 namespace afterglow::api {
 
 Result<void> SharedDevice::open(const DeviceOptions& options, const std::filesystem::path& cache_folder) {
@@ -17,7 +19,15 @@ Result<void> SharedDevice::adopt(const AdoptedDevice& adopted, const std::filesy
   return {};
 }
 
+Result<void> SharedDevice::check_process() const {
+  if (is_of_this_process()) return {};
+  return Error{ErrorKind::device, "the device was opened before fork(): open it in this process"};
+}
+
 void SharedDevice::share(const std::filesystem::path& cache_folder) {
+  if (!cache_folder.empty())
+    if (const auto made = make_cache_folder(cache_folder / "shaders"); !made)
+      diagnostics.warn(made.error().file + ": " + made.error().message + "; nothing new is kept");
   shared = std::make_shared<SharedKernels>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
   if (!cache_folder.empty()) device->use_pipeline_cache((cache_folder / "pipelines").string());
 }

@@ -3,6 +3,8 @@
 // that know how the engine runs a stack.
 #pragma once
 
+#include <unistd.h>
+
 #include <atomic>
 #include <filesystem>
 #include <functional>
@@ -31,7 +33,13 @@ struct SharedDevice {
   Result<void> open(const DeviceOptions& options, const std::filesystem::path& cache_folder);
   Result<void> adopt(const AdoptedDevice& adopted, const std::filesystem::path& cache_folder);
 
+  /// After fork() neither the driver's threads nor ours are there: whoever waits for them waits for ever.
+  bool is_of_this_process() const { return process_ == getpid(); }
+  /// Errors (device): it is of another process.
+  Result<void> check_process() const;
+
  private:
+  const pid_t process_ = getpid();
   void share(const std::filesystem::path& cache_folder);
 };
 
@@ -94,6 +102,7 @@ class Backend {
   ~Backend();
 
   const BackendOptions& options() const { return options_; }
+  const SharedDevice& device() const { return *device_; }
   Diagnostics& diagnostics() { return diagnostics_; }
   Preset& preset() const { return source_->stack().preset(); }
   /// As they are in the frame that was prepared last; before there is one, for no frame in particular.

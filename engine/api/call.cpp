@@ -3,6 +3,7 @@
 
 #include "api/words.h"
 #include "core/printable.h"
+#include "core/utf8.h"
 
 namespace afterglow::api {
 namespace {
@@ -20,7 +21,9 @@ afterglow_error* no_memory() noexcept { return the_error_without_memory(); }
 afterglow_error* new_error(Error error) noexcept {
   try {
     error = for_hosts(std::move(error));
-    std::string text = error.text();
+    std::string text = utf8_text(error.text());
+    for (std::string* part : {&error.message, &error.file, &error.allowed, &error.nearest})
+      *part = utf8_text(std::move(*part));
     error.message = printable(std::move(error.message));
     return new afterglow_error{std::move(error), std::move(text)};
   } catch (...) {
@@ -32,14 +35,15 @@ Error usage(std::string message) { return {ErrorKind::usage, std::move(message)}
 
 Result<void> give(std::string text, afterglow_text** out, const char* function) {
   if (!out) return usage(std::string(function) + ": out is NULL");
-  *out = new afterglow_text{std::move(text)};
+  *out = new afterglow_text{utf8_text(std::move(text))};
   return {};
 }
 
 Diagnostics::Sink sink_of(afterglow_message_callback message, void* user) {
   if (!message) return {};
   return [message, user](Severity severity, const std::string& text) {
-    message(user, severity == Severity::warning ? AFTERGLOW_WARNING : AFTERGLOW_NOTE, view(for_hosts(text)));
+    const std::string told = utf8_text(for_hosts(text));
+    message(user, severity == Severity::warning ? AFTERGLOW_WARNING : AFTERGLOW_NOTE, view(told));
   };
 }
 

@@ -51,11 +51,14 @@ afterglow_error* afterglow_device_adopt(const afterglow_adopted_device* adopted,
   });
 }
 
-void afterglow_device_free(afterglow_device* device) { delete device; }
+void afterglow_device_free(afterglow_device* device) {
+  if (device && device->shared->is_of_this_process()) delete device;
+}
 
 afterglow_error* afterglow_device_describe(const afterglow_device* device, afterglow_text** out) {
   return call([&]() -> Result<void> {
     if (!device) return usage("afterglow_device_describe: device is NULL");
+    AFTERGLOW_CHECK(device->shared->check_process());
     return give(device_document(*device->shared->device), out, "afterglow_device_describe");
   });
 }

@@ -19,7 +19,7 @@ struct afterglow_stack {
 
 namespace afterglow::api {
 
-/// A stack to work on. Errors (usage): null.
+/// A stack to work on. Errors: usage (null), device (it is of another process).
 Result<Backend*> backend_of(const afterglow_stack* stack, const char* function);
 
 /// The frame as the engine has it, `given` may be null. Errors: usage.

@@ -12,6 +12,7 @@ namespace afterglow::api {
 
 Result<Backend*> backend_of(const afterglow_stack* stack, const char* function) {
   if (!stack) return usage(std::string(function) + ": stack is NULL");
+  AFTERGLOW_CHECK(stack->backend->device().check_process());
   return stack->backend.get();
 }
 
@@ -187,6 +188,7 @@ afterglow_error* afterglow_stack_create(afterglow_device* device, const afterglo
     if (!out) return usage("afterglow_stack_create: out is NULL");
     *out = nullptr;
     if (!device) return usage("afterglow_stack_create: device is NULL");
+    AFTERGLOW_CHECK(device->shared->check_process());
     AFTERGLOW_TRY(const auto given, take(options, afterglow_stack_options_default(), "afterglow_stack_options"));
     AFTERGLOW_TRY(const BackendOptions wanted, options_of(given));
     AFTERGLOW_TRY(auto backend, Backend::open(device->shared, wanted));
@@ -195,7 +197,9 @@ afterglow_error* afterglow_stack_create(afterglow_device* device, const afterglo
   });
 }
 
-void afterglow_stack_free(afterglow_stack* stack) { delete stack; }
+void afterglow_stack_free(afterglow_stack* stack) {
+  if (stack && stack->backend->device().is_of_this_process()) delete stack;
+}
 
 afterglow_error* afterglow_stack_run(afterglow_stack* stack, const afterglow_run_info* info) {
   return call([&]() -> Result<void> {
@@ -229,7 +233,7 @@ bool afterglow_stack_runs(const afterglow_stack* stack) {
 }
 
 void afterglow_stack_reset_history(afterglow_stack* stack) {
-  if (stack) stack->backend->reset_histories();
+  if (const auto backend = backend_of(stack, "afterglow_stack_reset_history")) (*backend)->reset_histories();
 }
 
 afterglow_error* afterglow_stack_update(afterglow_stack* stack, bool* changed) {

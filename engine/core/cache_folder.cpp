@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "core/cache_folder.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 #include <vector>
 
 namespace afterglow {
 namespace fs = std::filesystem;
+
+Result<void> make_cache_folder(const fs::path& folder) {
+  std::error_code why;
+  fs::create_directories(folder, why);
+  if (!why && access(folder.c_str(), W_OK | X_OK) != 0) why = {errno, std::system_category()};
+  if (!why) return {};
+  return Error{ErrorKind::io, fmt::format("the cache folder cannot be written to: {}", why.message()), folder.string()};
+}
 
 CacheTrim trim_cache(const fs::path& folder, const std::string& extension, const CacheLimits& limits,
                      fs::file_time_type now) {

@@ -7,7 +7,12 @@
 #include <filesystem>
 #include <string>
 
+#include "core/result.h"
+
 namespace afterglow {
+
+/// Makes the folder where there is none. Errors (io): nothing can be kept there.
+Result<void> make_cache_folder(const std::filesystem::path& folder);
 
 struct CacheLimits {
   std::uint64_t bytes = 256u << 20;    ///< of all files together

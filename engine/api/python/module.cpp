@@ -3,11 +3,40 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "collect.h"
 #include "stack.h"
 
 namespace py = pybind11;
+using afterglow::python::collected;
 using afterglow::python::PyDevice;
 using afterglow::python::PyStack;
+
+namespace {
+
+/// Raises the class of afterglow/__init__.py that fits the kind.
+void raise(const afterglow::Error& error) {
+  const py::module_ module = py::module_::import("afterglow");
+  const char* name = error.kind == AFTERGLOW_ERROR_USAGE    ? "UsageError"
+                     : error.kind == AFTERGLOW_ERROR_SCRIPT ? "ScriptError"
+                     : error.kind == AFTERGLOW_ERROR_IO     ? "FileError"
+                     : error.kind == AFTERGLOW_ERROR_DEVICE ? "DeviceError"
+                                                            : "Error";
+  const py::object type = module.attr(name);
+  const auto or_none = [](const std::string& text) { return text.empty() ? py::object(py::none()) : py::str(text); };
+  const py::object raised = type(error.what(), error.message, or_none(error.file),
+                                 error.line > 0 ? py::object(py::int_(error.line)) : py::none(), or_none(error.allowed),
+                                 or_none(error.nearest));
+  PyErr_SetObject(type.ptr(), raised.ptr());
+}
+
+py::object itself(py::object self) { return self; }
+
+template <class T>
+void leave(T& self, const py::args&) {
+  self.close();
+}
+
+}  // namespace
 
 PYBIND11_MODULE(_afterglow, module) {
   module.attr("__version__") = std::to_string(AFTERGLOW_VERSION_MAJOR) + "." + std::to_string(AFTERGLOW_VERSION_MINOR) +
@@ -17,17 +46,19 @@ PYBIND11_MODULE(_afterglow, module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const afterglow::Error& error) {
-      afterglow::python::raise(error);
+      raise(error);
     }
   });
 
-  py::class_<PyDevice, std::shared_ptr<PyDevice>>(module, "Device", "A Vulkan device.")
-      .def(py::init<const std::string&, bool, const std::optional<std::string>&, py::object>(),
-           py::arg("device") = "auto", py::kw_only(), py::arg("validate") = false, py::arg("cache") = py::none(),
-           py::arg("message") = py::none())
-      .def("describe", &PyDevice::describe, "Name, type, driver, uuid and what the validation layer has said.");
+  py::class_<PyDevice, std::shared_ptr<PyDevice>>(module, "Device", "A Vulkan device.", collected<PyDevice>())
+      .def(py::init<const std::string&, bool, const py::object&, const py::object&>(), py::arg("device") = "auto",
+           py::kw_only(), py::arg("validate") = false, py::arg("cache") = py::none(), py::arg("message") = py::none())
+      .def("describe", &PyDevice::describe, "Name, type, driver, uuid and what the validation layer has said.")
+      .def("close", &PyDevice::close, "Lets go of the device; its stacks go on.")
+      .def("__enter__", &itself)
+      .def("__exit__", &leave<PyDevice>);
 
-  py::class_<PyStack>(module, "Stack", "A preset made runnable on a device.")
+  py::class_<PyStack>(module, "Stack", "A preset made runnable on a device.", collected<PyStack>())
       .def(py::init<const py::object&, const py::kwargs&>(), py::arg("preset") = py::none())
       .def("run", &PyStack::run, py::arg("source"), "Runs the stack on a picture; returns the result.")
       .def("set", &PyStack::set, py::arg("name"), py::arg("value"), "Sets ENTRY.SETTING.")
@@ -41,5 +72,8 @@ PYBIND11_MODULE(_afterglow, module) {
       .def("report", &PyStack::report, "What ran in the last frame, what did not and why, times.")
       .def("reload", &PyStack::reload, py::arg("text") = py::none(), "Reads the files again, or takes another text.")
       .def("update", &PyStack::update, "With follow=True: takes edits; true when there were any.")
-      .def("reset_history", &PyStack::reset_history, "Forgets earlier frames.");
+      .def("reset_history", &PyStack::reset_history, "Forgets earlier frames.")
+      .def("close", &PyStack::close, "Frees what it holds, and ends its threads.")
+      .def("__enter__", &itself)
+      .def("__exit__", &leave<PyStack>);
 }

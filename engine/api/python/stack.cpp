@@ -3,108 +3,22 @@
 
 #include <pybind11/stl.h>
 
-#include <set>
-#include <type_traits>
+#include <thread>
+#include <utility>
 #include <variant>
+
+#include "values.h"
 
 namespace afterglow::python {
 namespace {
 
 py::object from_json(const std::string& text) { return py::module_::import("json").attr("loads")(text); }
 
-/// What Python calls a wrong type, it does: pybind11 makes a RuntimeError of it.
-template <class T>
-T cast(const py::object& value, const std::string& name, const char* what) {
-  try {
-    return value.cast<T>();
-  } catch (const py::cast_error&) {
-    throw py::type_error(name + " must be " + what + ", not " +
-                         py::type::of(value).attr("__name__").cast<std::string>());
-  }
-}
-template <class T>
-constexpr const char* kWhat = std::is_same_v<T, bool>   ? "a bool"
-                              : std::is_arithmetic_v<T> ? "a number"
-                                                        : "a str";
-
-bool is_bool(const py::handle& value) {
-  return py::isinstance<py::bool_>(value) || py::isinstance(value, py::module_::import("numpy").attr("bool_"));
-}
-bool is_number(const py::handle& value) { return PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr()); }
-
-/// Options by name, each asked for once; what nobody asked for is unknown.
-class Options {
- public:
-  Options(const char* function, const py::kwargs& given) : function_(function), given_(given) {}
-
-  py::object take(const char* name) {
-    known_.insert(name);
-    return given_.contains(name) ? py::object(given_[name]) : py::none();
-  }
-  template <class T>
-  T take(const char* name, T otherwise) {
-    const py::object value = take(name);
-    return value.is_none() ? otherwise : cast<T>(value, name, kWhat<T>);
-  }
-  void finish() const {
-    for (const auto& [key, value] : given_)
-      if (!known_.count(key.cast<std::string>()))
-        throw py::type_error(std::string(function_) + "() got an unexpected keyword argument '" +
-                             key.cast<std::string>() + "'");
-  }
-
- private:
-  const char* function_;
-  const py::kwargs& given_;
-  std::set<std::string> known_;
-};
-
-/// A sink that calls a Python function, or logs to the logger "afterglow" without one.
-MessageSink sink_of(const py::object& message) {
-  // Python objects may only go while the interpreter's lock is held, and the library forgets sinks where it likes.
-  const std::shared_ptr<py::object> call(new py::object(message), [](py::object* object) {
-    const py::gil_scoped_acquire lock;
-    delete object;
-  });
-  return [call](afterglow_severity severity, std::string_view text) {
-    const py::gil_scoped_acquire lock;
-    try {
-      const char* level = severity == AFTERGLOW_WARNING ? "warning" : "info";
-      if (call->is_none())
-        py::module_::import("logging").attr("getLogger")("afterglow").attr(level)("%s", std::string(text));
-      else
-        (*call)(level, std::string(text));
-    } catch (py::error_already_set& error) {
-      error.discard_as_unraisable("afterglow's message function");
-    }
-  };
-}
-
-std::function<void()> wake_of(const py::object& wake) {
-  if (wake.is_none()) return {};
-  const std::shared_ptr<py::object> call(new py::object(wake), [](py::object* object) {
-    const py::gil_scoped_acquire lock;
-    delete object;
-  });
-  return [call] {
-    const py::gil_scoped_acquire lock;
-    try {
-      (*call)();
-    } catch (py::error_already_set& error) {
-      error.discard_as_unraisable("afterglow's wake function");
-    }
-  };
-}
-
 afterglow_precision precision_of(const std::string& name) {
   if (name == "auto") return AFTERGLOW_PRECISION_AUTOMATIC;
   if (name == "fp32") return AFTERGLOW_PRECISION_FP32;
   if (name == "fp16") return AFTERGLOW_PRECISION_FP16;
   throw py::value_error("precision is '" + name + "'; allowed: auto, fp32, fp16");
-}
-
-std::string path_text(const py::handle& path) {
-  return py::module_::import("os").attr("fspath")(path).cast<std::string>();
 }
 
 afterglow_rect region_of(const py::object& region) {
@@ -114,51 +28,14 @@ afterglow_rect region_of(const py::object& region) {
   return {x, y, width, height};
 }
 
-/// As the command line writes it.
-std::string argument_text(const std::string& name, const py::handle& value) {
-  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
-  if (is_number(value)) return py::repr(py::float_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
-  std::string text;
-  for (const double number : cast<std::vector<double>>(py::reinterpret_borrow<py::object>(value), name,
-                                                       "a bool, a number, a str or some numbers"))
-    text += (text.empty() ? "{" : ", ") + py::repr(py::float_(number)).cast<std::string>();
-  return text + "}";
-}
-
 }  // namespace
-
-void raise(const Error& error) {
-  const py::module_ module = py::module_::import("afterglow");
-  const char* name = error.kind == AFTERGLOW_ERROR_USAGE    ? "UsageError"
-                     : error.kind == AFTERGLOW_ERROR_SCRIPT ? "ScriptError"
-                     : error.kind == AFTERGLOW_ERROR_IO     ? "FileError"
-                     : error.kind == AFTERGLOW_ERROR_DEVICE ? "DeviceError"
-                                                            : "Error";
-  const py::object type = module.attr(name);
-  const auto or_none = [](const std::string& text) { return text.empty() ? py::object(py::none()) : py::str(text); };
-  const py::object raised = type(error.what(), error.message, or_none(error.file),
-                                 error.line > 0 ? py::object(py::int_(error.line)) : py::none(), or_none(error.allowed),
-                                 or_none(error.nearest));
-  PyErr_SetObject(type.ptr(), raised.ptr());
-}
-
-PyDevice::PyDevice(const std::string& device, bool validate, const std::optional<std::string>& cache,
-                   py::object message) {
-  DeviceOptions options{device, validate, cache.value_or(""), sink_of(message)};
-  const py::gil_scoped_release others;
-  device_ = std::make_shared<Device>(std::move(options));
-}
-
-py::object PyDevice::describe() const { return from_json(device_->describe()); }
 
 PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   Options options("Stack", given);
   StackOptions wanted;
   const py::object device = options.take("device");
   wanted.preset_text = options.take("text", std::string());
-  if (const py::object paths = options.take("paths"); !paths.is_none())
-    for (const auto& path : paths) wanted.paths.push_back(path_text(path));
+  if (const py::object paths = options.take("paths"); !paths.is_none()) wanted.paths = path_texts(paths);
   if (const py::object folder = options.take("installation"); !folder.is_none())
     wanted.installation = path_text(folder);
   if (const py::object file = options.take("calibration"); !file.is_none()) wanted.calibration = path_text(file);
@@ -173,27 +50,72 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   wanted.reference = options.take("reference", false);
   wanted.time_kernels = options.take("time_kernels", false);
   wanted.follow = options.take("follow", false);
-  wanted.message = sink_of(options.take("message"));
-  wanted.wake = wake_of(options.take("wake"));
+  message_ = callback_of(options.take("message"));
+  wake_ = callback_of(options.take("wake"));
+  wanted.message = sink_of(message_);
+  wanted.wake = wake_of(wake_);
   options.finish();
-  device_ = device.is_none() ? std::make_shared<PyDevice>("auto", false, std::nullopt, py::none())
-                             : cast<std::shared_ptr<PyDevice>>(device, "device", "an afterglow.Device");
+  device_ = device.is_none() ? py::cast(std::make_shared<PyDevice>("auto", false, py::none(), py::none())) : device;
+  const auto& shared = cast<const PyDevice&>(device_, "device", "an afterglow.Device");
+  device_message_ = shared.message();
+  const std::shared_ptr<Device> used = shared.get();
   const std::string file = preset.is_none() ? "" : path_text(preset);
   const py::gil_scoped_release others;
-  stack_ = std::make_unique<Stack>(device_->get(), file, std::move(wanted));
+  stack_ = std::make_unique<Stack>(*used, file, std::move(wanted));
 }
 
 PyStack::~PyStack() {
+  const bool own = in_own_function();
   // Threads of a stack that follows its files may be waiting to call Python.
   const py::gil_scoped_release others;
+  // On such a thread it cannot wait for that thread's end: the collector may run anywhere.
+  if (own) std::thread([gone = std::move(stack_)] {}).detach();
   stack_.reset();
+}
+
+void PyStack::close() {
+  {
+    const auto lock = wait_for_others();
+    const py::gil_scoped_release others;
+    stack_.reset();
+  }
+  clear();
+}
+
+int PyStack::visit(visitproc visit, void* arg) const {
+  Py_VISIT(device_.ptr());
+  if (const int stop = message_->visit(visit, arg)) return stop;
+  return wake_->visit(visit, arg);
+}
+
+void PyStack::clear() {
+  message_->clear();
+  wake_->clear();
+  const py::object gone = std::exchange(device_, py::object());
+}
+
+/// A function of the stack's, or its device's, is what runs on this thread.
+bool PyStack::in_own_function() const {
+  const auto runs = [](const std::shared_ptr<Callback>& one) { return one && one->is_running(); };
+  return runs(message_) || runs(wake_) || runs(device_message_);
+}
+
+/// What such a function waits for is waiting for it. Throws std::runtime_error.
+std::unique_lock<std::mutex> PyStack::wait_for_others() const {
+  if (in_own_function())
+    throw std::runtime_error(
+        "a stack must not be used in its own message or wake function, nor in the message function of its device");
+  const py::gil_scoped_release others;
+  // After fork() the thread that holds the lock is in the other process; the library refuses the call.
+  return getpid() == process_ ? std::unique_lock(mutex_) : std::unique_lock(mutex_, std::defer_lock);
 }
 
 /// Other Python threads run meanwhile; those that use this stack wait.
 template <class Work>
 auto PyStack::alone(Work work) const {
+  const auto lock = wait_for_others();
+  if (!stack_) throw py::value_error("the stack is closed");
   const py::gil_scoped_release others;
-  const std::lock_guard lock(mutex_);
   return work();
 }
 
@@ -246,7 +168,7 @@ void PyStack::set(const std::string& name, const py::object& value) {
     return alone([&] { stack_->set(name, on); });
   }
   if (py::isinstance<py::str>(value)) {
-    const auto text = value.cast<std::string>();
+    const std::string text = text_of(value);
     return alone([&] { check(afterglow_stack_set(stack_->get(), to_view(name), to_view(text))); });
   }
   if (is_number(value)) {

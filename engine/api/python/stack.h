@@ -2,24 +2,32 @@
 // The classes of the Python module.
 #pragma once
 
+#include <unistd.h>
+
 #include <memory>
 #include <mutex>
 #include <optional>
 
 #include "arrays.h"
+#include "callback.h"
 
 namespace afterglow::python {
 
-/// Raises the class of afterglow/__init__.py that fits the kind.
-void raise(const Error& error);
-
 class PyDevice {
  public:
-  PyDevice(const std::string& device, bool validate, const std::optional<std::string>& cache, py::object message);
-  const Device& get() const { return *device_; }
+  PyDevice(const std::string& device, bool validate, const py::object& cache, const py::object& message);
+  /// Kept by whoever uses it while it may be closed. Throws py::value_error.
+  std::shared_ptr<Device> get() const;
+  const std::shared_ptr<Callback>& message() const { return message_; }
   py::object describe() const;
+  /// Stacks that were made on it go on.
+  void close();
+
+  int visit(visitproc visit, void* arg) const { return message_->visit(visit, arg); }
+  void clear() { message_->clear(); }
 
  private:
+  std::shared_ptr<Callback> message_;
   std::shared_ptr<Device> device_;
 };
 
@@ -42,15 +50,23 @@ class PyStack {
   void reload(const std::optional<std::string>& text);
   bool update();
   void reset_history();
+  void close();
+
+  int visit(visitproc visit, void* arg) const;
+  void clear();
 
  private:
+  bool in_own_function() const;
+  std::unique_lock<std::mutex> wait_for_others() const;
   template <class Work>
   auto alone(Work work) const;
   py::object get_plainly(const std::string& name) const;
   py::object json(std::string (Stack::*function)() const) const;
 
-  std::shared_ptr<PyDevice> device_;
+  py::object device_;  // the PyDevice, as Python has it: the collector has to see the way to it
+  std::shared_ptr<Callback> message_, wake_, device_message_;
   std::unique_ptr<Stack> stack_;
+  pid_t process_ = getpid();
   mutable std::mutex mutex_;
 };
 

@@ -99,6 +99,42 @@ TEST_F(ErrorTest, ReportsSpeakOfTheLibrary) {
               testing::EndsWith("; precision"));
 }
 
+TEST_F(ErrorTest, TextsAreUtf8WhateverScriptsSay) {
+  afterglow_stack_options options = listening();
+  options.preset_text = afterglow_str("print('caf\xE9') error('caf\xE9 \xED\xA0\x80')");
+  const ErrorPtr error = broken(options);
+  EXPECT_EQ(str(afterglow_error_get_message(error.get())), "caf\uFFFD \uFFFD\uFFFD\uFFFD");
+  EXPECT_THAT(text_of(error.get()), testing::AllOf(HasSubstr("caf\uFFFD"), Not(HasSubstr("\xE9"))));
+  EXPECT_THAT(messages_, testing::ElementsAre(testing::EndsWith("caf\uFFFD")));
+
+  const std::string name = file("caf\xE9.lua");  // a name is any bytes
+  write("caf\xE9.lua", "return 1 +");
+  options.preset_text = {};
+  options.preset_file = str(name);
+  const ErrorPtr named = broken(options);
+  EXPECT_THAT(str(afterglow_error_get_file(named.get())), testing::EndsWith("caf\uFFFD.lua"));
+}
+
+TEST_F(ErrorTest, CacheFoldersThatCannotBeWrittenToAreTold) {
+  const std::string folder = file("look.lua");
+  afterglow_device_options options = afterglow_device_options_default();
+  options.cache_folder = str(folder);
+  options.message = listening().message;
+  options.user = &messages_;
+  afterglow_device* device = nullptr;
+  ASSERT_TRUE(fine(afterglow_device_open(&options, &device)));
+  afterglow_device_free(device);
+  EXPECT_THAT(messages_,
+              testing::Contains(testing::AllOf(HasSubstr(folder), HasSubstr("cannot be written to"))).Times(1));
+
+  messages_.clear();
+  const std::string good = file("cache");
+  options.cache_folder = str(good);
+  ASSERT_TRUE(fine(afterglow_device_open(&options, &device)));
+  afterglow_device_free(device);
+  EXPECT_THAT(messages_, testing::Not(testing::Contains(HasSubstr("cannot be written to"))));
+}
+
 TEST_F(ErrorTest, AnInstallationThatIsNoneIsTold) {
   write("nothing/readme", "");
   const std::string nowhere = file("nothing");

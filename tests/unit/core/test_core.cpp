@@ -13,6 +13,7 @@
 #include "core/paths.h"
 #include "core/result.h"
 #include "core/text.h"
+#include "core/utf8.h"
 
 namespace afterglow {
 namespace {
@@ -94,6 +95,20 @@ TEST(Text, NumbersReadBackShort) {
   EXPECT_EQ(number_text(0.2), "0.2");
   EXPECT_EQ(number_text(1e10), "10000000000");
   EXPECT_EQ(number_text(-15), "-15");
+}
+
+TEST(Text, WhatIsNoUtf8IsReplaced) {
+  for (const char* good : {"", "plain", "caf\u00E9", "\uD7FF\uE000\uFFFD", "\U00010000\U0010FFFF"})
+    EXPECT_EQ(utf8_text(good), good);
+  EXPECT_EQ(utf8_text("caf\xE9"), "caf\uFFFD");
+  EXPECT_EQ(utf8_text("\xE9t\xE9"), "\uFFFDt\uFFFD");
+  EXPECT_EQ(utf8_text("a\xF0\x9F\x98z"), "a\uFFFDz");  // a character that breaks off
+  EXPECT_EQ(utf8_text("\x80\xFF"), "\uFFFD\uFFFD");    // no beginning
+  EXPECT_EQ(utf8_text("\xC0\x80"), "\uFFFD\uFFFD");    // longer than it need be
+  EXPECT_EQ(utf8_text("\xE0\x9F\xBF"), "\uFFFD\uFFFD\uFFFD");
+  EXPECT_EQ(utf8_text("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD");            // a surrogate
+  EXPECT_EQ(utf8_text("\xF4\x90\x80\x80"), "\uFFFD\uFFFD\uFFFD\uFFFD");  // above U+10FFFF
+  EXPECT_EQ(utf8_text(std::string("a\0\xFFz", 4)), std::string("a\0\uFFFDz", 6));
 }
 
 TEST(Hash, BoundariesCount) {

@@ -7,7 +7,7 @@ from numpy.typing import DTypeLike, NDArray
 
 __version__: str
 
-_Path = Union[str, PathLike[str]]
+_Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 _Message = Callable[[Literal["info", "warning"], str], None]
 _Value = Union[bool, float, str, Sequence[float]]
 
@@ -26,21 +26,30 @@ class DeviceError(Error, RuntimeError): ...
 class Device:
     """A Vulkan device, and the kernels that its stacks share. `device`: "auto", an index, or a part of a name or uuid.
     `cache`: a folder where compiled shaders are kept; None: nowhere. Messages go to `message`, or to the logger
-    "afterglow"."""
+    "afterglow". `message` may be called on any thread, and must not use a stack of this device: that raises
+    RuntimeError. After fork() the device and its stacks are the parent's: a child that uses them gets a DeviceError, and
+    opens a device of its own."""
 
     def __init__(
         self,
         device: str = "auto",
         *,
         validate: bool = False,
-        cache: Optional[str] = None,
+        cache: Optional[_Path] = None,
         message: Optional[_Message] = None,
     ) -> None: ...
     def describe(self) -> dict[str, Any]: ...
+    def close(self) -> None:
+        """Lets go of the device, as the end of a `with` block does; stacks that were made on it go on. What uses it
+        later raises ValueError."""
+
+    def __enter__(self) -> Device: ...
+    def __exit__(self, *exception: object) -> None: ...
 
 class Stack:
     """A preset made runnable on a device. Several threads may use one: their calls wait for each other. Two stacks run
-    at the same time."""
+    at the same time. `message` and `wake` may be called on any thread, and must not use the stack themselves: that
+    raises RuntimeError. They may be methods of what owns the stack."""
 
     def __init__(
         self,
@@ -49,7 +58,7 @@ class Stack:
         text: str = "",
         device: Optional[Device] = None,
         args: Optional[Mapping[str, _Value]] = None,
-        paths: Iterable[_Path] = (),
+        paths: Union[_Path, Iterable[_Path]] = (),
         installation: Optional[_Path] = None,
         calibration: Optional[_Path] = None,
         precision: Literal["auto", "fp32", "fp16"] = "auto",
@@ -101,3 +110,9 @@ class Stack:
     def reload(self, text: Optional[str] = None) -> None: ...
     def update(self) -> bool: ...
     def reset_history(self) -> None: ...
+    def close(self) -> None:
+        """Frees the stack and its memory and ends its threads, as the end of a `with` block does. What uses it later
+        raises ValueError."""
+
+    def __enter__(self) -> Stack: ...
+    def __exit__(self, *exception: object) -> None: ...

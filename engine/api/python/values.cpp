@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "values.h"
+
+namespace afterglow::python {
+
+/// numpy is not imported for this: where nobody has done so, nothing can be of it.
+bool is_bool(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return true;
+  const py::object numpy = py::module_::import("sys").attr("modules").attr("get")("numpy");
+  return !numpy.is_none() && py::isinstance(value, numpy.attr("bool_"));
+}
+
+bool is_number(const py::handle& value) { return PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr()); }
+
+std::string text_of(const py::handle& text) {
+  return text.attr("encode")("utf-8", "surrogateescape").cast<std::string>();
+}
+
+std::string path_text(const py::handle& path) {
+  return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+}
+
+std::vector<std::string> path_texts(const py::object& paths) {
+  if (py::isinstance<py::str>(paths) || py::isinstance<py::bytes>(paths) || py::hasattr(paths, "__fspath__"))
+    return {path_text(paths)};
+  std::vector<std::string> out;
+  for (const auto& path : paths) out.push_back(path_text(path));
+  return out;
+}
+
+std::string argument_text(const std::string& name, const py::handle& value) {
+  if (py::isinstance<py::str>(value)) return text_of(value);
+  if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
+  if (is_number(value)) return py::repr(py::float_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  std::string text;
+  for (const double number : cast<std::vector<double>>(py::reinterpret_borrow<py::object>(value), name,
+                                                       "a bool, a number, a str or some numbers"))
+    text += (text.empty() ? "{" : ", ") + py::repr(py::float_(number)).cast<std::string>();
+  return text + "}";
+}
+
+py::object Options::take(const char* name) {
+  known_.insert(name);
+  return given_.contains(name) ? py::object(given_[name]) : py::none();
+}
+
+void Options::finish() const {
+  for (const auto& [key, value] : given_)
+    if (!known_.count(key.cast<std::string>()))
+      throw py::type_error(std::string(function_) + "() got an unexpected keyword argument '" +
+                           key.cast<std::string>() + "'");
+}
+
+}  // namespace afterglow::python
