@@ -38,7 +38,7 @@ void be_quiet(spvtools::Optimizer& optimizer) {
 
 /// Instructions of each block, by label. A function of GLSL (sin, pow) is many to the device's compiler.
 std::map<std::uint32_t, std::uint64_t> block_sizes(const Module& module) {
-  constexpr std::uint64_t kOfFunction = 16;
+  constexpr std::uint64_t kOfFunction = 32;
   std::map<std::uint32_t, std::uint64_t> out;
   std::uint64_t* size = nullptr;
   for (const auto& i : module.code) {
@@ -51,7 +51,7 @@ std::map<std::uint32_t, std::uint64_t> block_sizes(const Module& module) {
 
 /// Loops of so many turns become straight code, as long as that adds no more than so many instructions: only the rows
 /// of straight code take turns and share what they read.
-constexpr std::uint64_t kMostTurns = 16, kMostMore = 512;
+constexpr std::uint64_t kMostTurns = 16, kMostMore = 1024;
 
 /// Asks for the loops that are to become straight code. False: there is none.
 bool mark_short_loops(Module& module) {

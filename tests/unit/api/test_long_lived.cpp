@@ -105,6 +105,17 @@ TEST_F(LongLived, FramesEditsSizesAndDevices) {
   expect_flat(*before, is_long() ? 32u << 20 : 24u << 20);
 }
 
+TEST_F(LongLived, LooksThatRunOnceAndGo) {
+  // As thumbnails do: nothing else runs on the device. lavapipe would keep 5 MB of each.
+  open_device();
+  std::optional<Held> before;
+  for (int i = 0; i < 40; ++i) {
+    if (i == 10) before.emplace();
+    run(stack_of(preset("fx.bloom {}")).get(), 1, 64, 48);
+  }
+  expect_flat(*before, 32u << 20);
+}
+
 TEST_F(LongLived, PresetsOneAfterTheOther) {
   // The driver keeps what it compiles for a device within bounds of its own, which it takes some hundreds to reach.
   const int presets = is_long() ? 10'000 : 240, warm = is_long() ? 2000 : 120;
