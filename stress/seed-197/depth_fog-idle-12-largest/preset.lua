@@ -1,5 +1,0 @@
-local fx = require "afterglow"
-
-return fx.stack {
-  fx.depth_fog {},
-}
