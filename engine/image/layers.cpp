@@ -98,6 +98,12 @@ int color_rank(const Layer& l) {
   return l.name.empty() ? 3 : 5;
 }
 
+std::vector<const Layer*> all_of(const std::vector<Layer>& layers) {
+  std::vector<const Layer*> all;
+  for (const Layer& layer : layers) all.push_back(&layer);
+  return all;
+}
+
 const Layer* best_color(const std::vector<const Layer*>& layers) {
   const Layer* best = nullptr;
   for (const Layer* layer : layers) {
@@ -255,8 +261,7 @@ std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const Ch
       known = true;
     }
   }
-  std::vector<const Layer*> sorted;
-  for (const Layer& layer : layers) sorted.push_back(&layer);
+  std::vector<const Layer*> sorted = all_of(layers);
   const auto distance = [&](const Layer* l) { return known && l->group == group ? 0 : l->group.empty() ? 1 : 2; };
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](const Layer* a, const Layer* b) { return distance(a) < distance(b); });
@@ -269,9 +274,7 @@ Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::
   const std::vector<Layer> layers = layers_of(parts);
   if (const auto error = nothing_readable(parts, layers)) return *error;
   if (name.empty()) {
-    std::vector<const Layer*> all;
-    for (const Layer& layer : layers) all.push_back(&layer);
-    if (const Layer* best = best_color(all)) return color_choice(*best);
+    if (const Layer* best = best_color(all_of(layers))) return color_choice(*best);
     // A single unnamed channel ("channel0", "I") is a grey picture.
     if (layers.size() == 1 && layers[0].name.empty() && color_rank(layers[0]) >= 0) return color_choice(layers[0]);
     if (layers.size() == 1 && layers[0].find({"z", "x"}) < 0 && !named_depth(layers[0]) && !named_normal(layers[0]))
@@ -293,9 +296,7 @@ Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::
 std::vector<std::string> equal_colors(const std::vector<FilePart>& parts) {
   constexpr int kFirstUnsure = 4;  // of `color_rank`: names that say nothing
   const std::vector<Layer> layers = layers_of(parts);
-  std::vector<const Layer*> all;
-  for (const Layer& layer : layers) all.push_back(&layer);
-  const Layer* best = best_color(all);
+  const Layer* best = best_color(all_of(layers));
   if (!best || color_rank(*best) < kFirstUnsure) return {};
   std::vector<std::string> names;
   for (const Layer& layer : layers)

@@ -77,12 +77,13 @@ Image placed(Image image, const Rect& window, const Rect& wanted, const std::arr
   return out;
 }
 
-void note_layer(Picture& picture, const std::string& layer, const NonFinite& found) {
+/// `window`: what the layer's own pixels cover, which `found` counts from.
+void note_layer(Picture& picture, const std::string& layer, const NonFinite& found, const Rect& window) {
   if (found.count() == 0) return;
   NonFinite& noted = picture.non_finite[layer] = found;
   // Places are counted from the display window's corner, like those of --region.
-  noted.first->x += picture.data_window.x - picture.display_window.x;
-  noted.first->y += picture.data_window.y - picture.display_window.y;
+  noted.first->x += window.x - picture.display_window.x;
+  noted.first->y += window.y - picture.display_window.y;
 }
 
 /// "color: 2 NaN, 1 +Inf, first at pixel 5,3: (nan, 0.25, inf, 1)" for each layer.
@@ -189,9 +190,10 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   picture.has_alpha = plan.color.channels[3] >= 0;
   picture.facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
   picture.layers = layer_names(plan.file->parts());
-  if (const auto equal = equal_colors(plan.file->parts()); options.layer.empty() && !equal.empty())
-    diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
-                                                     plan.file->path().string(), equal.front(), join(equal)));
+  if (options.layer.empty())
+    if (const auto equal = equal_colors(plan.file->parts()); !equal.empty())
+      diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
+                                                       plan.file->path().string(), equal.front(), join(equal)));
   ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
   if (!options.input_space.empty()) {
     AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));
@@ -242,13 +244,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     }
     decode_color(encoding, picture.color, picture.sanitized, policy == NanPolicy::neighbour ? nullptr : &found);
   }
-  const auto in_frame = [&](NonFinite& layer, const Rect& window) {
-    if (!layer.first) return;
-    layer.first->x += window.x - picture.data_window.x;
-    layer.first->y += window.y - picture.data_window.y;
-  };
-  in_frame(found, data);
-  note_layer(picture, "color", found);
+  note_layer(picture, "color", found, data);
   picture.color =
       placed(std::move(picture.color), data, picture.data_window, {0, 0, 0, picture.has_alpha ? 0.0f : 1.0f});
   for (std::size_t i = 0; i < auxiliary.size(); ++i) {
@@ -256,10 +252,9 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     const FilePart& from = plan.part_of(extra);
     Image image = upright(std::move(auxiliary[i]), from.orientation);
     const Rect window = upright_auxiliary(plan, extra);
-    NonFinite in_layer = find_non_finite(image);
+    const NonFinite in_layer = find_non_finite(image);
     if (in_layer.count() > 0 && policy == NanPolicy::neighbour) repair_from_neighbours(image);
-    in_frame(in_layer, window);
-    note_layer(picture, extra.name, in_layer);
+    note_layer(picture, extra.name, in_layer, window);
     if (extra.kind == &kMotion) image = motion_of(image);
     const float nothing = extra.kind ? extra.kind->background : 0.0f;
     image = placed(std::move(image), window, picture.data_window, {nothing, nothing, nothing, nothing});
