@@ -226,8 +226,9 @@ AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
 /* The entries in the order of execution with their settings, as JSON:
  *   [{"name", "effect", "at", "order", "enabled", "file", "line",
  *     "settings": [{"name", "type", "value", "default", "doc", and where they apply "min", "max", "choices",
- *                   "extensions", "unit"}]}]
- * Values are those of the frame that was prepared or run last. */
+ *                   "extensions", "unit"}],
+ *     "composition": [the same of "opacity", "blend", "mask", and of the settings of its mask ("mask.luma.from")]}]
+ * A mask that is no number has its text as its value. Values are those of the frame that was prepared or run last. */
 AFTERGLOW_API afterglow_error *afterglow_stack_settings(const afterglow_stack *stack, afterglow_text **out);
 
 /* Sets what `afterglow --set NAME=VALUE` sets, from the same text: "0.4", "true", "aces", "{1, 0.5, 0}", "#ff8000".

@@ -15,7 +15,35 @@ using Json = nlohmann::ordered_json;
 /// Names of files and texts of scripts are any bytes: what is no UTF-8 becomes U+FFFD.
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+SettingValue value_of(double number, SettingType type) { return {.type = type, .number = {number}, .choice = {}}; }
+SettingValue value_of(const std::string& choice, SettingType type) {
+  return {.type = type, .number = {}, .choice = choice};
+}
+
+/// A mask that is made of more than a number is a text.
+SettingValue value_of(const EntryMask* mask) {
+  if (!mask) return value_of(1, SettingType::number);
+  if (mask->kind == EntryMask::Kind::number) return value_of(mask->number, SettingType::number);
+  return value_of(mask->text(), SettingType::text);
+}
+
 }  // namespace
+
+std::optional<SettingValue> entry_value(const StackEntry& entry, const std::string& name) {
+  for (const auto& [setting, value] : entry.settings)
+    if (setting == name) return value;
+  if (name == "enabled") return value_of(entry.enabled ? 1 : 0, SettingType::boolean);
+  if (name == "order") return value_of(entry.order, SettingType::integer);
+  if (name == "at") return value_of(entry.at, SettingType::enumeration);
+  if (name == "opacity") return value_of(entry.opacity, SettingType::number);
+  if (name == "blend") return value_of(entry.blend, SettingType::enumeration);
+  if (name == "mask") return value_of(entry.mask.get());
+  if (!entry.mask) return {};
+  for (const EntryMask* part : entry.mask->parts())
+    for (const auto& [setting, value] : part->settings)
+      if (name == part->part + "." + setting) return value;
+  return {};
+}
 
 std::string device_document(const Device& device) {
   const DeviceInfo& info = device.info();
@@ -39,6 +67,18 @@ std::string settings_document(const Backend& backend) {
       const auto found = std::ranges::find(entry.settings, declared.name, [](const auto& pair) { return pair.first; });
       if (found != entry.settings.end()) setting["value"] = value_json(found->second);
       item["settings"].push_back(std::move(setting));
+    }
+    item["composition"] = Json::array();
+    for (const auto& name : backend.preset().setting_names(entry)) {
+      if (item.contains(name) || std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end())
+        continue;
+      const auto declared = backend.preset().setting_schema(entry, name);
+      const auto value = entry_value(entry, name);
+      if (!declared || !value) continue;
+      Json setting = setting_json(*declared);
+      setting["name"] = name;
+      setting["value"] = value_json(*value);
+      item["composition"].push_back(std::move(setting));
     }
     out.push_back(std::move(item));
   }

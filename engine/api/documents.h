@@ -2,11 +2,15 @@
 // What hosts are told as JSON.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "api/backend.h"
 
 namespace afterglow::api {
+
+/// What an entry has under a name that can be set: a setting of its effect goes before what all entries have.
+std::optional<SettingValue> entry_value(const StackEntry& entry, const std::string& name);
 
 std::string device_document(const Device& device);
 std::string arguments_document(const Backend& backend);

@@ -33,35 +33,6 @@ Result<std::string> number(double value) {
   return fmt::format("{:.17g}", value);
 }
 
-SettingValue value_of(double number, SettingType type) { return {.type = type, .number = {number}, .choice = {}}; }
-SettingValue value_of(const std::string& choice, SettingType type) {
-  return {.type = type, .number = {}, .choice = choice};
-}
-
-/// A mask that is made of more than a number is a text.
-SettingValue value_of(const EntryMask* mask) {
-  if (!mask) return value_of(1, SettingType::number);
-  if (mask->kind == EntryMask::Kind::number) return value_of(mask->number, SettingType::number);
-  return value_of(mask->text(), SettingType::text);
-}
-
-/// What an entry has under a name that can be set: a setting of its effect goes before what all entries have.
-std::optional<SettingValue> value_of(const StackEntry& entry, const std::string& name) {
-  for (const auto& [setting, value] : entry.settings)
-    if (setting == name) return value;
-  if (name == "enabled") return value_of(entry.enabled ? 1 : 0, SettingType::boolean);
-  if (name == "order") return value_of(entry.order, SettingType::integer);
-  if (name == "at") return value_of(entry.at, SettingType::enumeration);
-  if (name == "opacity") return value_of(entry.opacity, SettingType::number);
-  if (name == "blend") return value_of(entry.blend, SettingType::enumeration);
-  if (name == "mask") return value_of(entry.mask.get());
-  if (!entry.mask) return {};
-  for (const EntryMask* part : entry.mask->parts())
-    for (const auto& [setting, value] : part->settings)
-      if (name == part->part + "." + setting) return value;
-  return {};
-}
-
 /// Errors (usage): unknown entry or setting, with the nearest.
 Result<SettingValue> value_of(const afterglow_stack* stack, const char* function, afterglow_string name) {
   AFTERGLOW_TRY(Backend * backend, backend_of(stack, function));
@@ -78,7 +49,7 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
                  0,
                  join(names),
                  nearest_name(parts.entry, names)};
-  if (auto value = value_of(*entry, parts.setting)) return *std::move(value);
+  if (auto value = entry_value(*entry, parts.setting)) return *std::move(value);
   names = backend->preset().setting_names(*entry);
   return Error{ErrorKind::usage,
                fmt::format("effect '{}' has no setting '{}'", entry->effect, parts.setting),

@@ -156,8 +156,16 @@ Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
   if (!entry.work.runs()) return {};
   const auto start = Clock::now();
   AFTERGLOW_CHECK(fit_histories());
-  AFTERGLOW_TRY(entry.program, Program::create(device, shaders, shared->compiler, graph_of_program(entry.work.graph),
-                                               program_options()));
+  const auto create = [&] {
+    return Program::create(device, shaders, shared->compiler, graph_of_program(entry.work.graph), program_options());
+  };
+  auto made = create();
+  if (!made && made.error().kind == ErrorKind::device && entries.size() > 1) {  // the memory may be what spare ones have
+    entries.erase(std::next(entries.begin()), entries.end());
+    made = create();
+  }
+  if (!made) return std::move(made).error();
+  entry.program = std::move(made).value();
   if (options.diagnostics)
     for (const auto& warning : entry.program->warnings()) options.diagnostics->warn_once(warning, warning);
   device.save_pipeline_cache();
@@ -165,14 +173,16 @@ Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
   return {};
 }
 
-/// As many as may stay, within the memory that there may be. What runs nothing is made at once when it is wanted.
+/// As many as may stay, within a part of the memory that there may be. What runs nothing is made at once when it is
+/// wanted.
 void ProgramCache::State::drop_spares() {
+  constexpr std::uint64_t kPart = 4;
   const auto bytes_of = [](const Entry& entry) { return entry.program ? entry.program->memory().arena : 0; };
   std::uint64_t bytes = bytes_of(entries.front());
   int stay = 0;
   for (auto entry = std::next(entries.begin()); entry != entries.end();) {
     bytes += bytes_of(*entry);
-    const bool stays = entry->program && stay < options.spare && bytes <= options.max_memory;
+    const bool stays = entry->program && stay < options.spare && bytes <= options.max_memory / kPart;
     stay += stays ? 1 : 0;
     entry = stays ? std::next(entry) : entries.erase(entry);
   }

@@ -59,7 +59,7 @@ struct ProgramCacheOptions {
   bool flag_non_finite = false;  ///< see ProgramOptions, also for the next
   bool keep_images = false;
   /// Programs of other structures that stay besides the present one, for presets whose structure moves with the frame;
-  /// with their images, within `max_memory` altogether.
+  /// with their images and the present one's, within a quarter of `max_memory`.
   int spare = 0;
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   Diagnostics* diagnostics = nullptr;     ///< takes the warnings of shaders (CompiledKernel::warnings); null: nobody

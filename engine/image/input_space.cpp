@@ -85,8 +85,8 @@ constexpr std::array kSpaces{
     InputSpace{"acescct", "ACEScct (AMPAS S-2016-001), primaries AP1", from_acescct, kAp1},
     InputSpace{"acescg", "linear ACEScg (AMPAS S-2014-004), primaries AP1", as_it_is, kAp1},
     InputSpace{"cineon", "Cineon printing density (black 95, white 685 of 1023), Rec.709", from_cineon, kRec709},
-    InputSpace{"gamma22", "power 2.2, Rec.709", from_gamma22, kRec709},
-    InputSpace{"gamma24", "power 2.4, Rec.709", from_gamma24, kRec709},
+    InputSpace{"gamma22", "power 2.2, Rec.709", from_gamma22, kRec709, true},
+    InputSpace{"gamma24", "power 2.4, Rec.709", from_gamma24, kRec709, true},
     InputSpace{"hlg", "HLG (ITU-R BT.2100), Rec.2020; the signal 0.75 is 1", from_hlg, kRec2020},
     InputSpace{"lin_p3d65", "linear P3 with the white of D65 (SMPTE EG 432-1)", as_it_is, kP3},
     InputSpace{"lin_rec2020", "linear Rec.2020", as_it_is, kRec2020},
@@ -94,9 +94,9 @@ constexpr std::array kSpaces{
     InputSpace{"logc3", "ARRI LogC3 at EI 800, ALEXA Wide Gamut 3", from_logc3, kWideGamut3},
     InputSpace{"logc4", "ARRI LogC4, ARRI Wide Gamut 4", from_logc4, kWideGamut4},
     InputSpace{"pq", "PQ (SMPTE ST 2084), Rec.2020; 203 cd/m² is 1", from_pq, kRec2020},
-    InputSpace{"rec709", "BT.709, the curve of cameras", from_rec709, kRec709},
+    InputSpace{"rec709", "BT.709, the curve of cameras", from_rec709, kRec709, true},
     InputSpace{"slog3", "Sony S-Log3, S-Gamut3.Cine", from_slog3, kSGamut3Cine},
-    InputSpace{"srgb", "sRGB (IEC 61966-2-1)", srgb_to_linear, kRec709},
+    InputSpace{"srgb", "sRGB (IEC 61966-2-1)", srgb_to_linear, kRec709, true},
 };
 
 }  // namespace

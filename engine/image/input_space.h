@@ -16,6 +16,7 @@ struct InputSpace {
   const char* doc;              ///< curve and primaries, in one line
   double (*to_linear)(double);  ///< stored value (0…1 of full codes) to light; 1 is a white that diffuses
   Chromaticities primaries;
+  bool of_display = false;  ///< a curve of displays: eight bits show no steps
 };
 
 /// All of them, by name. docs/math.md §24 has curves and sources.

@@ -17,6 +17,7 @@
 #include "image/exr_header.h"
 #include "image/half_colors.h"
 #include "image/input_space.h"
+#include "image/metadata.h"
 #include "image/movie.h"
 #include "image/movie_container.h"
 #include "image/orientation.h"
@@ -113,6 +114,19 @@ void report_gamut(const Picture& picture, const ColorEncoding& encoding, const f
                                                        file.string(), negative));
 }
 
+/// Effects count in pixels: a round blur of pixels that are not square is an ellipse when they are shown.
+void report_pixel_shape(const FileFacts& facts, const fs::path& file, Diagnostics& diagnostics) {
+  constexpr float kNear = 0.01f;
+  const MetadataValue* found = find_metadata(facts.metadata, "PixelAspectRatio");
+  const float ratio = found ? metadata_number(*found, 1) : 1;
+  if (!std::isfinite(ratio) || ratio <= 0 || std::abs(ratio - 1) <= kNear) return;
+  const float wide = swaps_axes(facts.orientation) ? 1 / ratio : ratio;
+  diagnostics.warn_once("pixels not square",
+                        fmt::format("{}: its pixels are {:.3g} times as wide as high; effects take them for square: "
+                                    "what they make round is not round when the picture is shown",
+                                    file.string(), wide));
+}
+
 void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diagnostics& diagnostics) {
   const SanitizeCounts& counts = picture.sanitized;
   std::vector<std::string> parts;
@@ -194,6 +208,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     if (const auto equal = equal_colors(plan.file->parts()); !equal.empty())
       diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
                                                        plan.file->path().string(), equal.front(), join(equal)));
+  report_pixel_shape(*picture.facts, plan.file->path(), diagnostics);
   ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
   if (!options.input_space.empty()) {
     AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));

@@ -5,6 +5,7 @@
 #include <map>
 #include <system_error>
 
+#include "core/ascii.h"
 #include "core/text.h"
 #include "image/picture_format.h"
 #include "image/sequence.h"
@@ -23,14 +24,12 @@ struct Numbered {
 /// By what stands before and behind the number.
 using NumberedGroups = std::map<std::pair<std::string, std::string>, Numbered>;
 
-bool is_number(char c) { return c >= '0' && c <= '9'; }
-
 /// Notes a file by the last number in its name, the extension left out.
 void note_name(NumberedGroups& groups, const fs::path& file) {
   const std::string name = file.filename().string(), stem = file.stem().string();
   if (name.starts_with('.') || name.find('#') != std::string::npos) return;
   std::size_t end = stem.size();
-  while (end > 0 && !is_number(stem[end - 1])) --end;
+  while (end > 0 && !is_digit(stem[end - 1])) --end;
   const std::size_t begin = number_begin(stem, end);
   if (begin == end || end - begin > kMostFrameDigits) return;
   Numbered& group = groups[{name.substr(0, begin), name.substr(end)}];

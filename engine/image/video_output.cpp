@@ -165,12 +165,6 @@ Result<const Codec*> codec_of(const Container& container, const WriteOptions& op
   return &*codec;
 }
 
-/// Logarithms, HDR and light itself show steps in eight bits, where codes of displays do not.
-bool shows_steps(const OutputSpace* space) {
-  constexpr std::array<std::string_view, 4> kOfDisplays{"gamma22", "gamma24", "rec709", "srgb"};
-  return space && std::ranges::find(kOfDisplays, space->name()) == kOfDisplays.end();
-}
-
 Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& options, bool deep, bool has_alpha,
                                      const std::filesystem::path& file) {
   const std::string& wanted = options.video.pixel_format;
@@ -179,7 +173,9 @@ Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& opt
     const char* opaque = deep ? codec.deep : codec.layouts.front().c_str();
     if (std::string_view(codec.name) == "gif" && !has_alpha) opaque = "rgb24";
     const bool ten = std::ranges::find(codec.layouts, "yuv420p10le") != codec.layouts.end();
-    if (shows_steps(options.space) && ten && std::string_view(opaque) == "yuv420p") opaque = "yuv420p10le";
+    // Logarithms, HDR and light itself show steps in eight bits.
+    const bool shows_steps = options.space && !options.space->of_display();
+    if (shows_steps && ten && std::string_view(opaque) == "yuv420p") opaque = "yuv420p10le";
     return find_pixel_layout(has_alpha && alpha ? alpha : opaque);
   }
   const PixelLayout* layout = find_pixel_layout(lower(wanted));

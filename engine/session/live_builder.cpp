@@ -33,15 +33,15 @@ LiveBuilder::LiveBuilder(Device& device, std::filesystem::path preset, const Liv
       preset_(std::move(preset)),
       options_(options),
       diagnostics_(diagnostics),
-      may_warm_up_(options.warm_up && WarmUp::helps(device)) {
+      may_warm_up_(options.warm_up && WarmUp::helps(device)),
+      files_(options.watch, options.follow ? [this](Clock::time_point since,
+                                                    bool polled) { files_may_differ(since, polled); }
+                                           : Watcher::Look()) {
   request_.overrides = options.stack.preset.overrides;
   request_.arguments = options.stack.preset.arguments;
   wanted_.request = true;
   wanted_.note(Clock::now());
   status_.building = true;
-  if (options.follow)
-    watcher_ = std::make_unique<Watcher>(
-        options.watch, [this](Clock::time_point since, bool polled) { files_may_differ(since, polled); });
   thread_ = std::thread([this] { run(); });
 }
 
@@ -53,7 +53,6 @@ LiveBuilder::~LiveBuilder() {
   }
   changed_.notify_all();
   thread_.join();
-  watcher_.reset();
 }
 
 void LiveBuilder::notify() const {
@@ -110,7 +109,7 @@ bool LiveBuilder::overtaken() const {
     if (ends_ || wanted_.request) return true;
     if (!wanted_.files) return false;
   }
-  return first_changed(probes_, options_.watch.poll).has_value();
+  return files_.build_changed();
 }
 
 // ---- the thread
@@ -148,8 +147,8 @@ void LiveBuilder::run() {
 }
 
 void LiveBuilder::work(const Wanted& why, const LiveRequest& request) {
-  take_new_probes();
-  if (!why.request && !first_changed(probes_, options_.watch.poll) && !first_changed(later_probes_)) return;
+  files_.take_later();
+  if (!why.request && !files_.changed()) return;
   BuildTimes times;
   times.notice = milliseconds_between(why.since.value_or(Clock::now()), Clock::now());
   {
@@ -226,7 +225,7 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
     until_->store(kNever);  // from now on the script is the stack's, and nobody interrupts it
     until_.reset();
   }
-  follow(*record->looks());
+  if (files_.follow(*record->looks())) want_look();
   times.script = milliseconds_since(start);
   if (!built) return std::move(built).error();
   built->files = record->looks();
@@ -276,47 +275,16 @@ void LiveBuilder::warm_up(Stack& stack, BuildTimes& times) {
   times.warm_up = milliseconds_since(start);
 }
 
-/// Frames may read what the build did not: other passes at another time.
 void LiveBuilder::also_follow(FileProbes looks) {
+  files_.note_later(std::move(looks));
+  want_look();
+}
+
+void LiveBuilder::want_look() {
   const std::lock_guard lock(mutex_);
-  new_probes_.merge(looks);
   wanted_.files = true;
   wanted_.note(Clock::now());
   changed_.notify_all();
-}
-
-void LiveBuilder::take_new_probes() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (new_probes_.empty()) return;
-    later_probes_.merge(new_probes_);
-    new_probes_.clear();
-  }
-  watch();
-}
-
-void LiveBuilder::watch() {
-  if (!watcher_) return;
-  std::vector<std::filesystem::path> paths = paths_to_watch(probes_);
-  for (auto& path : paths_to_watch(later_probes_)) paths.push_back(std::move(path));
-  watcher_->watch(paths);
-}
-
-/// Watches what the build has looked at; what changed before it was watched is looked at again.
-void LiveBuilder::follow(FileProbes looks) {
-  const auto same_path = [](const auto& a, const auto& b) {
-    return a.first == b.first &&
-           (a.second.kind == FileProbe::Kind::listing) == (b.second.kind == FileProbe::Kind::listing);
-  };
-  const bool same = std::ranges::equal(probes_, looks, same_path);
-  probes_ = std::move(looks);
-  const bool had_more = !later_probes_.empty();
-  later_probes_.clear();  // frames of the new stack read them again
-  if (!same || had_more) watch();
-  if (!first_changed(probes_)) return;
-  const std::lock_guard lock(mutex_);
-  wanted_.files = true;
-  wanted_.note(Clock::now());
 }
 
 // ---- what comes of a build
@@ -393,7 +361,7 @@ LiveStatus LiveBuilder::status() const {
     const std::lock_guard lock(mutex_);
     status = status_;
   }
-  if (watcher_) status.watching = watcher_->method();
+  status.watching = files_.method();
   return status;
 }
 

@@ -15,6 +15,7 @@
 #include "core/file_record.h"
 #include "core/stopwatch.h"
 #include "exec/cpu/warm_up.h"
+#include "session/followed_files.h"
 #include "session/live.h"
 
 namespace afterglow {
@@ -107,9 +108,7 @@ class LiveBuilder {
   bool starves() const;
   void warm_up(Stack& stack, BuildTimes& times);
   bool overtaken() const;
-  void follow(FileProbes looks);
-  void take_new_probes();
-  void watch();
+  void want_look();
   void notify() const;
 
   const std::shared_ptr<const int> token_ = std::make_shared<const int>();  // every BuiltStack holds it
@@ -119,8 +118,6 @@ class LiveBuilder {
   Diagnostics& diagnostics_;
 
   // Of the builder's thread alone.
-  FileProbes probes_;           ///< of the last build
-  FileProbes later_probes_;     ///< of frames since
   std::optional<Basis> basis_;  ///< of the newest stack that was built
   Clock::time_point published_at_{};
   std::unique_ptr<WarmUp> warm_up_;
@@ -134,7 +131,6 @@ class LiveBuilder {
   bool builds_ = false;                       ///< busy with a build, not only with letting go of what is dead
   std::uint64_t asked_ = 0, answered_ = 0;    ///< calls of `settle`, and those whose changes are built or have failed
   std::optional<Clock::time_point> gave_up_;  ///< the first build that was, since one came to an end
-  FileProbes new_probes_;                     ///< of frames
   std::shared_ptr<Until> until_;              ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};
   BuiltParts parts_;
@@ -145,7 +141,7 @@ class LiveBuilder {
   std::mutex said_mutex_;
   std::set<std::string> said_;  ///< messages that were passed on, while each build says them again
 
-  std::unique_ptr<Watcher> watcher_;
+  FollowedFiles files_;
   std::thread thread_;
 };
 

@@ -29,9 +29,9 @@ struct StackOptions {
   bool skip_idle = true;  ///< run frames without the effects that their content makes idle (never with `reference`)
   bool flag_non_finite = false;  ///< the result's alpha tells of colours that were not finite: see ProgramOptions
   bool keep_images = false;      ///< images between passes stay, so that after an edit only what it changes runs again
-  /// Programs of other structures that stay besides the present one, for presets whose structure moves with the frame;
-  /// with their images, within `max_memory` altogether.
-  int spare_programs = 0;
+  /// Programs of other structures that stay besides the present one, for presets whose structure moves with the frame
+  /// and for sizes in turn; with their images and the present one's, within a quarter of `max_memory`.
+  int spare_programs = 2;
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
   /// At most so many rows an invocation, whatever calibration says. Fewer make large frames slower and shaders faster

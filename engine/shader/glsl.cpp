@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -125,6 +126,8 @@ std::optional<Error> recursion_error(const std::string& log, const std::string& 
                       fmt::format("'{}' calls itself{}: GLSL has no recursion", original_names(caller), by));
 }
 
+constexpr auto kRules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+
 bool parse(glslang::TShader& shader, EShLanguage language, const std::string& glsl, EShMessages rules) {
   const char* text = glsl.data();
   const int length = static_cast<int>(glsl.size());
@@ -133,6 +136,23 @@ bool parse(glslang::TShader& shader, EShLanguage language, const std::string& gl
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
   return shader.parse(GetDefaultResources(), 460, false, rules);
+}
+
+/// Once for all threads. glslang makes its tables of built-in functions in the first parse, under a lock that stays
+/// closed when memory ends there: every later call would wait for ever. So that parse is made here, and never again.
+/// It is never finalised: other users of glslang in the process may come and go as they like.
+bool begin_glslang() {
+  static std::once_flag once;
+  static bool ready = false;
+  std::call_once(once, [] {
+    try {
+      if (!glslang::InitializeProcess()) return;
+      glslang::TShader shader(EShLangFragment);
+      ready = parse(shader, EShLangFragment, "#version 460\nvoid main() {}\n", kRules);
+    } catch (const std::bad_alloc&) {
+    }
+  });
+  return ready;
 }
 
 }  // namespace
@@ -145,24 +165,19 @@ std::string glsl_compiler_version() {
 
 Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const std::vector<std::string>& file_names,
                                                 GlslStage stage, bool with_lines) {
-  // Never finalised: other users of glslang in the process may come and go as they like.
-  static std::once_flag once;
-  static bool initialised = false;
-  std::call_once(once, [] { initialised = glslang::InitializeProcess(); });
-  if (!initialised) return Error{ErrorKind::other, "the GLSL compiler cannot be initialised"};
+  if (!begin_glslang()) return Error{ErrorKind::other, "the GLSL compiler cannot begin: there was not enough memory"};
 
   const EShLanguage language = stage == GlslStage::compute ? EShLangCompute : EShLangFragment;
-  constexpr auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  constexpr auto all_errors = static_cast<EShMessages>(rules | EShMsgCascadingErrors);
+  constexpr auto all_errors = static_cast<EShMessages>(kRules | EShMsgCascadingErrors);
   glslang::TShader shader(language);
-  if (!parse(shader, language, glsl, rules)) {
+  if (!parse(shader, language, glsl, kRules)) {
     glslang::TShader again(language);  // the first time it stops at the first error
     const bool more = !parse(again, language, glsl, all_errors);
     return compile_error((more ? again : shader).getInfoLog(), file_names);
   }
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(rules)) {
+  if (!program.link(kRules)) {
     if (auto recursion = recursion_error(program.getInfoLog(), glsl, file_names)) return *std::move(recursion);
     return compile_error(program.getInfoLog(), file_names);
   }

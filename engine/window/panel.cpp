@@ -117,9 +117,9 @@ void Panel::save_as() {
                                 .name = name.filename().string(),
                                 .button = "Save",
                                 .in_the_way = {}};
-  question.in_the_way = [preset = save_.file()](const std::string& name) -> std::optional<std::string> {
+  question.in_the_way = [preset = save_.file()](const std::string& typed) -> std::optional<std::string> {
     std::error_code none;
-    const std::filesystem::path file = copy_of(preset, name);
+    const std::filesystem::path file = copy_of(preset, typed);
     return std::filesystem::exists(file, none) ? std::optional(file.filename().string()) : std::nullopt;
   };
   save_as_.open(std::move(question));

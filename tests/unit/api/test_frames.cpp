@@ -94,6 +94,43 @@ TEST_F(FrameTest, EffectsLookBackAtTheFrameBefore) {
   EXPECT_EQ(run_frame(stack.get(), 12), 1);
 }
 
+TEST_F(FrameTest, PassesThatComeAndGoAreMadeOnce) {
+  look("fx.trail {}, fx.gain { amount = 2, opacity = function(t) return t.frame % 2 end }");
+  const StackPtr stack = this->stack();
+  const auto compiled = [&] { return json_of(afterglow_stack_report, stack.get())["milliseconds"]["compile"]; };
+  EXPECT_EQ(run_frame(stack.get(), 1), 2);
+  EXPECT_EQ(run_frame(stack.get(), 2), 2);
+  const auto both = compiled();
+  EXPECT_EQ(run_frame(stack.get(), 3), 3) << "what is handed on stays";
+  EXPECT_EQ(run_frame(stack.get(), 4), 2.5f);
+  EXPECT_EQ(compiled(), both);
+}
+
+TEST_F(FrameTest, SizesInTurnAreMadeOnce) {
+  look("fx.trail {}, fx.gain { amount = 2 }");
+  const StackPtr stack = this->stack();
+  double number = 0;
+  const auto run = [&](int width) {
+    std::vector<float> source(static_cast<std::size_t>(width) * 4, 1), result(source.size());
+    afterglow_frame frame = afterglow_frame_default();
+    frame.number = ++number;
+    afterglow_run_info info = afterglow_run_info_default();
+    info.frame = &frame;
+    info.source = image(source, width, 1);
+    info.result = image(result, width, 1);
+    EXPECT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+    return result[0];
+  };
+  const auto compiled = [&] { return json_of(afterglow_stack_report, stack.get())["milliseconds"]["compile"]; };
+  for (const int width : {3, 5, 8}) EXPECT_EQ(run(width), 2);
+  const auto all = compiled();
+  for (const int width : {3, 5, 8, 3}) EXPECT_EQ(run(width), 2) << "another size has no frame before it";
+  EXPECT_EQ(run(3), 3);
+  EXPECT_EQ(compiled(), all);
+  EXPECT_EQ(run(4), 2);  // a fourth takes the place of the one that has waited longest
+  EXPECT_GT(compiled(), all);
+}
+
 TEST_F(FrameTest, FramesGoOnWhereHalfFloatsAreLeftOut) {
   // The device takes half floats, which a frame with a history promises nothing in.
   write("devices.json", R"({ "devices": [ { "kind": "cpu", "choices": [

@@ -46,6 +46,33 @@ TEST_F(SettingsTest, TheSchemaIsJson) {
   EXPECT_EQ(way["choices"], (nlohmann::json{"once", "twice"}));
 }
 
+TEST_F(SettingsTest, TheSchemaHasHowAnEntryIsPutOverWhatItWasGiven) {
+  look("fx.gain { opacity = 0.5, mask = fx.mask.luma { from = 0.25 } }");
+  stack_ = stack();
+  const auto entry = json_of(afterglow_stack_settings, stack_.get())[0];
+  const auto of = [&](const char* name) {
+    const auto& all = entry["composition"];
+    const auto found = std::ranges::find(all, name, [](const auto& s) { return s["name"]; });
+    return found == all.end() ? nlohmann::json() : nlohmann::json(*found);
+  };
+  EXPECT_EQ(of("opacity")["value"], 0.5);
+  EXPECT_EQ(of("opacity")["max"], 1);
+  EXPECT_EQ(of("blend")["value"], "normal");
+  EXPECT_EQ(of("blend")["choices"].size(), 8u);
+  EXPECT_EQ(of("mask")["value"], "luma");
+  EXPECT_EQ(of("mask.luma.from")["value"], 0.25);
+  EXPECT_FALSE(of("mask.luma.from")["doc"].empty());
+  EXPECT_EQ(of("enabled"), nullptr);
+  EXPECT_EQ(of("amount"), nullptr);
+  // Every name of it can be set. A mask that is a number has no settings.
+  for (const auto& setting : entry["composition"]) {
+    if (setting["name"] == "mask") continue;
+    const std::string name = "gain." + setting["name"].get<std::string>();
+    const std::string value = setting["name"] == "blend" ? "add" : "0";
+    EXPECT_TRUE(fine(afterglow_stack_set(stack_.get(), str(name.c_str()), str(value.c_str())))) << name;
+  }
+}
+
 TEST_F(SettingsTest, EveryTypeGoesInAndOut) {
   EXPECT_FLOAT_EQ(first_sample(), 1.0f);
   ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));

@@ -40,6 +40,26 @@ TEST_F(ProgramCacheTest, ProgramsAreFoundByAllThatMakesThemAndByNothingElse) {
   EXPECT_FALSE(none->has(work(1, false))) << "nothing is spare";
 }
 
+TEST_F(ProgramCacheTest, SpareProgramsHaveAQuarterOfTheMemory) {
+  const auto work = [&](bool offset) {
+    FrameWork out{.graph = graph(1, offset)};
+    out.texts = texts_of(out.graph, *library_).value();
+    return out;
+  };
+  const auto measured = cache({.reference = true, .spare = 1});
+  ASSERT_TRUE(measured->prepare(work(false), *library_));
+  std::uint64_t both = measured->program()->memory().arena;
+  ASSERT_TRUE(measured->prepare(work(true), *library_));
+  both += measured->program()->memory().arena;
+  ASSERT_GT(both, 0u);
+  for (const bool enough : {true, false}) {
+    const auto programs = cache({.reference = true, .spare = 1, .max_memory = 4 * both - (enough ? 0 : 4)});
+    ASSERT_TRUE(programs->prepare(work(false), *library_));
+    ASSERT_TRUE(programs->prepare(work(true), *library_));
+    EXPECT_EQ(programs->has(work(false)), enough);
+  }
+}
+
 TEST_F(ProgramCacheTest, WhatCannotBeMadeLeavesNoPresentProgram) {
   const auto programs = cache();
   FrameWork good{.graph = graph(1)};

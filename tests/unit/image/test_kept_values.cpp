@@ -157,6 +157,34 @@ TEST_F(KeptBetween, ResolutionTurnsWithThePixels) {
   }
 }
 
+TEST_F(KeptBetween, PixelsThatAreNotSquareAreTold) {
+  struct {
+    const char* name;
+    float ratio;
+    int orientation;
+    const char* said;  ///< null: nothing
+  } const cases[] = {{"wide.tif", 2, 1, "2 times as wide as high"},
+                     {"turned.tif", 2, 6, "0.5 times as wide as high"},
+                     {"wide.exr", 1.422f, 1, "1.42 times as wide as high"},
+                     {"square.exr", 1, 1, nullptr},
+                     {"nearly.exr", 1.005f, 1, nullptr}};
+  for (const auto& c : cases) {
+    OIIO::ImageSpec spec = make_spec(8, 4, {"R", "G", "B"}, OIIO::TypeHalf);
+    spec.attribute("PixelAspectRatio", c.ratio);
+    spec.attribute("Orientation", c.orientation);
+    make_file(folder_ / c.name, {spec}, {marks(8, 4, 3)});
+    std::string said;
+    Diagnostics heard([&](Severity severity, const std::string& text) {
+      if (severity == Severity::warning) said += text;
+    });
+    ASSERT_TRUE(read_picture(folder_ / c.name, {}, heard)) << c.name;
+    if (c.said)
+      EXPECT_NE(said.find(c.said), std::string::npos) << c.name << ": " << said;
+    else
+      EXPECT_EQ(said, "") << c.name;
+  }
+}
+
 TEST_F(KeptBetween, WhatJpegSaysTwiceIsNotDoubled) {
   EXPECT_EQ(through({".jpg", ".jpg", ".jpg"}).get_string_attribute("IPTC:Creator"), "Me");
 }
