@@ -25,6 +25,7 @@
 #include "shader/source_hash.h"
 #include "shader/spirv_module.h"
 #include "shader/spirv_passes.h"
+#include "shader/usable.h"
 #include "shader/weight.h"
 
 namespace afterglow {
@@ -107,6 +108,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   const std::size_t bound = assembled.images.size() + (assembled.workgroup ? 1 : 0);  // and the target
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names, stage));
   AFTERGLOW_CHECK(check_weight(kernel.spirv, desc));
+  AFTERGLOW_CHECK(check_usable(kernel.spirv, assembled, stage));
   if (desc.config.guard_loops) {
     LoopsGuarded guarded = guard_loops(kernel.spirv, static_cast<std::uint32_t>(bound) + 1);
     kernel.spirv = std::move(guarded.spirv);

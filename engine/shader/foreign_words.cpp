@@ -75,7 +75,9 @@ std::string_view why_not(std::string_view name) {
   if (name.starts_with("gl_Max") || name.starts_with("gl_Min") || std::ranges::count(kOfWorkgroups, name) > 0)
     return {};
   if (name.starts_with("gl_")) return "what is drawn, and how, is the engine's affair";
-  if (name.starts_with("dFd") || name.starts_with("fwidth"))
+  if (name == "double" || name.starts_with("dvec") || name.starts_with("dmat"))
+    return "numbers of 64 bits are not switched on, and many devices have none; write float, vec and mat";
+  if (name.starts_with("dFd") || name.starts_with("fwidth") || name == "textureQueryLod")
     return "pixels that lie beside each other need not be made beside each other; read both by `fetch` in a sample "
            "shader";
   return {};

@@ -17,6 +17,7 @@
 #include "core/text.h"
 #include "shader/foreign_words.h"
 #include "shader/kernel.h"
+#include "shader/prelude.h"
 #include "shader/rename.h"
 #include "shader/token.h"
 
@@ -37,6 +38,28 @@ struct LogLine {
   std::string message;
   friend bool operator==(const LogLine&, const LogLine&) = default;
 };
+
+/// "fetch(sampler2D image, ivec2 pixel)" of a helper that every shader has; empty: there is none of that name.
+std::string helper_signature(std::string_view name) {
+  const std::string head = fmt::format(" {}(", name);
+  for (const auto& line : split(std::string(prelude_text()), '\n')) {
+    const auto at = line.find(head), end = line.find(") {");
+    if (at != std::string::npos && end != std::string::npos && at < line.find('(')) return line.substr(at + 1, end - at);
+  }
+  return {};
+}
+
+/// What an author may do about a message of the compiler, in place of it or behind it.
+std::string advised(std::string message, std::string_view token) {
+  if (const auto instead = in_glsl(token); !instead.empty()) return message + fmt::format("; write {}", instead);
+  if (message.find("can't modify a uniform") != std::string::npos)
+    return "a uniform cannot be written to; copy it into a variable";
+  if (message.find("cannot construct this type") != std::string::npos && token == "sampler/image")
+    return message + " (is this texture2D? write fetch(image, texel) or fetch_linear(image, position in texels))";
+  if (message.find("no matching overloaded function") == std::string::npos) return message;
+  const std::string signature = helper_signature(token);
+  return signature.empty() ? message : message + "; it is " + signature;
+}
 
 /// "ERROR: FILE:LINE: 'token' : message" with FILE a number.
 std::optional<LogLine> parse_line(std::string_view text) {
@@ -60,8 +83,7 @@ std::optional<LogLine> parse_line(std::string_view text) {
   if (out.message.ends_with('.')) out.message.pop_back();  // "'half': Reserved word."
   const auto quote = out.message.find('\'', 1);
   if (!out.message.starts_with('\'') || quote == std::string::npos) return out;
-  if (const auto instead = in_glsl(out.message.substr(1, quote - 1)); !instead.empty())
-    out.message += fmt::format("; write {}", instead);
+  out.message = advised(out.message, std::string_view(out.message).substr(1, quote - 1));
   return out;
 }
 
@@ -126,6 +148,20 @@ std::optional<Error> recursion_error(const std::string& log, const std::string& 
                       fmt::format("'{}' calls itself{}: GLSL has no recursion", original_names(caller), by));
 }
 
+/// "Linking fragment stage: No function definition (body) found:" and then "    f(f1;", without a place.
+std::optional<Error> undefined_error(const std::string& log, const std::string& glsl,
+                                     const std::vector<std::string>& file_names) {
+  constexpr std::string_view kFound = "No function definition (body) found:";
+  const auto found = log.find(kFound);
+  if (found == std::string::npos) return std::nullopt;
+  const auto from = found + kFound.size();
+  const std::string name = trim(log.substr(from, log.find('(', from) - from));
+  if (name.empty()) return std::nullopt;
+  const LogLine place = first_place(glsl, name);
+  return shader_error(place.file < file_names.size() ? file_names[place.file] : std::string(), place.line,
+                      fmt::format("'{}' is declared here, but defined nowhere", original_names(name)));
+}
+
 constexpr auto kRules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
 
 bool parse(glslang::TShader& shader, EShLanguage language, const std::string& glsl, EShMessages rules) {
@@ -179,6 +215,7 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   program.addShader(&shader);
   if (!program.link(kRules)) {
     if (auto recursion = recursion_error(program.getInfoLog(), glsl, file_names)) return *std::move(recursion);
+    if (auto undefined = undefined_error(program.getInfoLog(), glsl, file_names)) return *std::move(undefined);
     return compile_error(program.getInfoLog(), file_names);
   }
 

@@ -304,6 +304,8 @@ TEST(KernelCompiler, WordsOfOtherLanguagesAreTranslated) {
             "'saturate': no matching overloaded function found; write clamp(x, 0.0, 1.0)");
   EXPECT_EQ(message("half x = 0.5; return color * x;"), "'half': Reserved word; write float");
   EXPECT_EQ(message("return lost(color);"), "'lost': no matching overloaded function found");
+  EXPECT_EQ(message("return vec4(image_size(color.rg), 0, 1);"),
+            "'image_size': no matching overloaded function found; it is image_size(sampler2D image)");
 }
 
 TEST(KernelCompiler, EightThreadsShareOneCompiler) {
