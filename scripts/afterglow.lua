@@ -292,8 +292,9 @@ function filters.box(delta)
 end
 
 ---The mean over `x` times `y` texels of the source around the target's pixel centres, for making images smaller by that much:
----reads at most half a texel apart, so that a small light weighs the same (within 4 %) wherever it lies. 1 or less on an axis: one
----bilinear read there. By exactly 2 on both, `bilinear` makes the same with one read.
+---every texel alike where they are whole numbers; else reads at most half a texel apart, so that a small light weighs the same
+---(within 4 %) wherever it lies. 1 or less on an axis: one bilinear read there. By exactly 2 on both, `bilinear` makes the same with
+---one read.
 ---@param x number  source width over target width, at most 16
 ---@param y? number  source height over target height; default: x
 ---@return afterglow.Filter
@@ -303,7 +304,7 @@ function filters.area(x, y)
       core.fail("fx.filters.area: " .. core.show(ratio) .. " is not a ratio of sizes", "0 < ratio ≤ 16")
     end
     if ratio <= 1 then return { { 0, 1 } } end
-    local out, n = {}, math.ceil(2 * ratio)
+    local out, n = {}, ratio % 1 == 0 and ratio or math.ceil(2 * ratio)
     for i = 1, n do out[i] = { (i - (n + 1) / 2) * ratio / n, 1 / n } end
     return out
   end

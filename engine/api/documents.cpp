@@ -70,7 +70,8 @@ std::string settings_document(const Backend& backend) {
     }
     item["composition"] = Json::array();
     for (const auto& name : backend.preset().setting_names(entry)) {
-      if (item.contains(name) || std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end())
+      if (item.contains(name) ||
+          std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end())
         continue;
       const auto declared = backend.preset().setting_schema(entry, name);
       const auto value = entry_value(entry, name);

@@ -72,8 +72,14 @@ std::string entry_text(const Look& look, std::size_t place) {
   return out + table.text("   ");
 }
 
-std::vector<std::string> unread_notes(const Look& look) {
+/// Settings that nobody reads, and effects that were not compiled.
+std::vector<std::string> all_notes(const Look& look, const std::vector<std::string>& not_compiled) {
   std::vector<std::string> notes;
+  for (const auto& entry : not_compiled)
+    notes.push_back(
+        fmt::format("note: '{}' runs in none of the frames that were tried: its shaders are not compiled; --frame says "
+                    "one in which it runs",
+                    entry));
   for (const auto& [effect, setting] : look.build.unread)
     notes.push_back(fmt::format("note: setting '{}' of effect '{}' is never read", setting, effect));
   return notes;
@@ -101,7 +107,7 @@ std::vector<std::string> shadow_notes(const Look& look) {
 }
 
 std::string as_text(const Look& look, const std::string& file, const std::vector<std::string>& shadows,
-                    std::size_t warnings) {
+                    const std::vector<std::string>& notes_of_look, std::size_t warnings) {
   const auto& entries = *look.build.entries;
   std::string out = fmt::format("{}: {}\n", file, look.preset->name());
   for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, i + 1);
@@ -113,14 +119,15 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
                  allowed_text(argument.schema), argument.schema.doc});
     out += table.text("   ");
   }
-  for (const auto& notes : {shadows, unread_notes(look)})
+  for (const auto& notes : {shadows, notes_of_look})
     for (const auto& note : notes) out += note + "\n";
   const std::string warned = warnings == 0 ? "" : fmt::format(", {} warning{}", warnings, warnings == 1 ? "" : "s");
   return out + fmt::format("{} effects, {} passes in {} kernels: no errors{}\n", entries.size(),
                            look.build.graph.passes.size(), look.plan.kernels.size(), warned);
 }
 
-std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
+std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows,
+                    const std::vector<std::string>& notes) {
   Json out{{"file", file}, {"name", look.preset->name()}, {"entries", Json::array()}};
   for (std::size_t i = 0; i < look.build.entries->size(); ++i) {
     const auto& entry = (*look.build.entries)[i];
@@ -144,24 +151,26 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
   out["passes"] = look.build.graph.passes.size();
   out["kernels"] = look.plan.kernels.size();
   out["shadows"] = shadows;
-  out["notes"] = unread_notes(look);
+  out["notes"] = notes;
   return json_text(out);
 }
 
 Result<void> run_check(const CheckArguments& arguments, Console& console) {
   console.show_prints();
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
-  auto [errors, warnings] = check_shaders(look);
+  auto [shaders, not_compiled] = check_shaders(look);
+  auto& [errors, warnings] = shaders;
   for (const auto& warning : warnings) console.diagnostics().warn(warning);
   if (!errors.empty()) {
     for (std::size_t i = 0; i + 1 < errors.size(); ++i) console.error(errors[i]);
     return std::move(errors.back());
   }
-  const auto shadows = shadow_notes(look);
+  const auto shadows = shadow_notes(look), notes = all_notes(look, not_compiled);
   const auto& file = arguments.preset.file;
   const auto of_light = std::ranges::count_if(look.spaces, [](const EntrySpace& s) { return !s.warning.empty(); });
   const std::size_t warned = console.warnings() + static_cast<std::size_t>(of_light);
-  output("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows, warned), true));
+  output("{}", arguments.json ? as_json(look, file, shadows, notes)
+                              : printable(as_text(look, file, shadows, notes, warned), true));
   return {};
 }
 

@@ -110,13 +110,15 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
     for (const auto& mask : masks) names.push_back(kMask + mask.name);
     std::erase_if(effects, [&](const auto& effect) { return effect.name != arguments.name; });
     std::erase_if(masks, [&](const auto& mask) { return kMask + mask.name != arguments.name; });
-    if (effects.empty() && masks.empty())
+    if (effects.empty() && masks.empty()) {
+      if (auto error = effect_error(search_path_for({}, extra), arguments.name)) return *std::move(error);
       return Error{ErrorKind::usage,
                    fmt::format("unknown effect '{}'", arguments.name),
                    "afterglow effects",
                    0,
                    join(names) + "; effects of yours with --path FOLDER",
                    nearest_name(arguments.name, names)};
+    }
   }
   if (arguments.completion) {
     output("{}", completion_text(effects, masks));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/look.h"
 
+#include <algorithm>
 #include <set>
 
 #include "batch/crop.h"
@@ -9,6 +10,7 @@
 #include "exec/program_cache.h"
 #include "graph/condition.h"
 #include "graph/region.h"
+#include "script/explanation.h"
 #include "session/stack.h"
 #include "shader/kernel.h"
 
@@ -47,35 +49,75 @@ ExecutionConfig execution_on_cpu() {
   return calibration ? calibration->find(cpu, 0).choice : ExecutionConfig{};
 }
 
-}  // namespace
+bool is_skipped(const Build& build, const std::string& entry) {
+  return std::ranges::find(build.graph.skipped, entry, &Skipped::name) != build.graph.skipped.end();
+}
 
-ShaderFindings check_shaders(const Look& look) {
-  const ExecutionConfig config = execution_on_cpu();
-  KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  ShaderFindings found;
-  std::set<Hash> checked;  // most of these graphs differ in their last kernel alone
-  const auto check = [&](const FrameWork& work) {
-    ShaderFindings more = check_kernels(*look.shaders, compiler, work, config, checked);
-    std::ranges::move(more.errors, std::back_inserter(found.errors));
-    std::ranges::move(more.warnings, std::back_inserter(found.warnings));
+bool moves(const EntryHistory& entry) {
+  const auto setting_moves = [](const SettingHistory& setting) {
+    return !setting.overridden && (!setting.volumes.empty() || (!setting.kind.empty() && setting.kind != "fixed"));
   };
-  // As frames with alpha have it, and as opaque ones do.
-  std::vector<Graph> graphs{look.build.graph};
-  if (straight_passes(look.build.graph) > 0) graphs.push_back(without_division(look.build.graph));
-  for (const Graph& graph : graphs) check({.graph = graph});
-  if (found.errors.empty() && look.build.graph.result != look.build.graph.source) {
+  return std::ranges::any_of(entry.settings, setting_moves) || std::ranges::any_of(entry.composition, setting_moves);
+}
+
+/// Compiles kernels, each once.
+class KernelCheck {
+ public:
+  explicit KernelCheck(const Look& look) : look_(look) {}
+  ShaderFindings found;
+
+  /// As frames with alpha have the graph, and as opaque ones do.
+  void check(const Graph& graph) {
+    std::vector<Graph> graphs{graph};
+    if (straight_passes(graph) > 0) graphs.push_back(without_division(graph));
+    for (const Graph& one : graphs) check({.graph = one});
+    if (!found.errors.empty() || graph.result == graph.source) return;
     // The last kernel once more, as it is for display files without and with transparency.
-    for (const Graph& graph : graphs)
+    for (const Graph& one : graphs)
       for (const bool straight : {false, true}) {
-        FrameWork work{.graph = graph, .unorm8 = true};
+        FrameWork work{.graph = one, .unorm8 = true};
         encode_for_display(work.graph, {.straight_alpha = straight, .dither = true});
         check(work);
       }
   }
+
+ private:
+  void check(const FrameWork& work) {
+    ShaderFindings more = check_kernels(*look_.shaders, compiler_, work, config_, checked_);
+    std::ranges::move(more.errors, std::back_inserter(found.errors));
+    std::ranges::move(more.warnings, std::back_inserter(found.warnings));
+  }
+
+  const Look& look_;
+  const ExecutionConfig config_ = execution_on_cpu();
+  KernelCompiler compiler_{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
+  std::set<Hash> checked_;                               // most of these graphs differ in their last kernel alone
+};
+
+}  // namespace
+
+LookFindings check_shaders(const Look& look) {
+  constexpr double kLastFrame = 1025;
+  KernelCheck kernels(look);
+  kernels.check(look.build.graph);
+  std::vector<std::string> waiting;
+  for (const EntryHistory& entry : look.build.explanation->entries)
+    if (is_skipped(look.build, entry.name) && moves(entry)) waiting.push_back(entry.name);
+  for (double step = 1; !waiting.empty() && 1 + step <= kLastFrame && kernels.found.errors.empty(); step *= 2) {
+    BuildContext context = look.build.context;
+    context.frame = 1 + step;
+    context.time = step / context.fps;
+    Diagnostics silent;
+    const auto build = look.preset->evaluate(context, silent);
+    if (!build) continue;  // there may be no such frame
+    const auto ran = std::erase_if(waiting, [&](const std::string& entry) { return !is_skipped(*build, entry); });
+    if (ran > 0) kernels.check(build->graph);
+  }
+  LookFindings out{std::move(kernels.found), std::move(waiting)};
   std::set<std::string> seen;
-  std::erase_if(found.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
-  std::erase_if(found.warnings, [&](const std::string& warning) { return !seen.insert(warning).second; });
-  return found;
+  std::erase_if(out.shaders.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
+  std::erase_if(out.shaders.warnings, [&](const std::string& warning) { return !seen.insert(warning).second; });
+  return out;
 }
 
 }  // namespace afterglow

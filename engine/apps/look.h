@@ -24,7 +24,15 @@ struct Look {
 /// Errors: script, usage.
 Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console);
 
-/// Compiles every kernel of the plan, from the disk cache where possible; all that is wrong with GLSL, each once.
-ShaderFindings check_shaders(const Look& look);
+struct LookFindings {
+  ShaderFindings shaders;
+  /// Entries that the assumed frame leaves out, others may not, and that no frame that was tried has run: their shaders
+  /// are not compiled.
+  std::vector<std::string> not_compiled;
+};
+
+/// Compiles every kernel of the plan, from the disk cache where possible; all that is wrong with GLSL, each once. What
+/// the assumed frame leaves out and others may not is looked for in some of those: 2, 3, 5, 9, … 1025.
+LookFindings check_shaders(const Look& look);
 
 }  // namespace afterglow

@@ -160,7 +160,8 @@ Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
     return Program::create(device, shaders, shared->compiler, graph_of_program(entry.work.graph), program_options());
   };
   auto made = create();
-  if (!made && made.error().kind == ErrorKind::device && entries.size() > 1) {  // the memory may be what spare ones have
+  if (!made && made.error().kind == ErrorKind::device &&
+      entries.size() > 1) {  // the memory may be what spare ones have
     entries.erase(std::next(entries.begin()), entries.end());
     made = create();
   }

@@ -118,10 +118,14 @@ void separate_result(Graph& graph) {
   });
   const bool computed = is_computed(graph, graph.result);
   if (!source && !kept && !read && !computed) return;
+  copy_result(graph, kept       ? kept->effect
+                     : computed ? graph.passes[graph.images[graph.result].producer].effect
+                                : graph.histories.front().effect);
+}
+
+void copy_result(Graph& graph, const std::string& effect) {
   Pass copy;
-  copy.effect = kept       ? kept->effect
-                : computed ? graph.passes[graph.images[graph.result].producer].effect
-                           : graph.histories.front().effect;
+  copy.effect = effect;
   copy.name = unused_name(graph, copy.effect + ".result");
   copy.kind = PassKind::filter;
   copy.filter.interpolation = Interpolation::nearest;

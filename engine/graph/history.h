@@ -32,6 +32,9 @@ void drop_unread_histories(Graph& graph);
 /// source although histories have to be made, a pass that copies it is added; also where a compute pass makes it, since
 /// callers' images are drawn to.
 void separate_result(Graph& graph);
+/// Makes the result a copy of what it was, by a pass of its own: everything else then runs as it does behind the last
+/// effect of a stack.
+void copy_result(Graph& graph, const std::string& effect);
 
 /// How many earlier frames a frame needs: that of the effect with the longest history, and as many more as the
 /// histories of other effects ask for, because one may work on what another made. 0 without histories.

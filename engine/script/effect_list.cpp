@@ -2,6 +2,9 @@
 // Every effect and mask on the search path.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "script/preset.h"
 #include "script/runtime.h"
 
@@ -11,18 +14,23 @@ using namespace script;
 
 namespace {
 
+/// A state each: an effect that spends its budget or memory takes nothing from the others.
+Result<EffectSchema> load(const SearchPath& path, const std::string& name, ScriptKind kind, Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const std::unique_ptr<Runtime> runtime, Runtime::create(path, ScriptLimits{}, diagnostics));
+  int index = -1;
+  auto error = runtime->box->run(name + ".lua", [&](lua_State* lua) { index = find_effect(lua, name, kind); });
+  if (error) return *std::move(error);
+  return runtime->effects[static_cast<std::size_t>(index)].schema;
+}
+
 Result<std::vector<EffectSchema>> list_scripts(const SearchPath& path, Diagnostics& diagnostics, ScriptKind kind) {
   std::vector<EffectSchema> schemas;
   for (const auto& name : effect_names(path, kind)) {
-    // A state each: an effect that spends its budget or memory takes nothing from the others.
-    AFTERGLOW_TRY(const std::unique_ptr<Runtime> runtime, Runtime::create(path, ScriptLimits{}, diagnostics));
-    int index = -1;
-    const auto error = runtime->box->run(name + ".lua", [&](lua_State* lua) { index = find_effect(lua, name, kind); });
-    if (error)
-      diagnostics.warn(
-          fmt::format("{} '{}' is left out: {}", kind == ScriptKind::mask ? "mask" : "effect", name, error->text()));
+    if (auto schema = load(path, name, kind, diagnostics))
+      schemas.push_back(std::move(schema).value());
     else
-      schemas.push_back(runtime->effects[static_cast<std::size_t>(index)].schema);
+      diagnostics.warn(fmt::format("{} '{}' is left out: {}", kind == ScriptKind::mask ? "mask" : "effect", name,
+                                   schema.error().text()));
   }
   return schemas;
 }
@@ -31,6 +39,18 @@ Result<std::vector<EffectSchema>> list_scripts(const SearchPath& path, Diagnosti
 
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics) {
   return list_scripts(path, diagnostics, ScriptKind::effect);
+}
+
+std::optional<Error> effect_error(const SearchPath& path, const std::string& name) {
+  constexpr std::string_view kOfMasks = "mask.";
+  const bool mask = name.starts_with(kOfMasks);
+  const ScriptKind kind = mask ? ScriptKind::mask : ScriptKind::effect;
+  const std::string own = mask ? name.substr(kOfMasks.size()) : name;
+  const auto known = effect_names(path, kind);
+  if (std::ranges::find(known, own) == known.end()) return std::nullopt;
+  Diagnostics silent;
+  auto schema = load(path, own, kind, silent);
+  return schema ? std::nullopt : std::optional(std::move(schema).error());
 }
 
 Result<std::vector<EffectSchema>> list_masks(const SearchPath& path, Diagnostics& diagnostics) {

@@ -171,7 +171,14 @@ std::string Preset::State::changed_when_repeated(const BuildContext& context, co
 Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnostics) {
   State& state = *state_;
   const bool first = state.evaluations++ == 0;
-  AFTERGLOW_TRY(Graph graph, state.build(context, diagnostics));
+  if (first) state.first_frame = context.frame;
+  auto built = state.build(context, diagnostics);
+  if (!built) {
+    Error error = std::move(built).error();
+    if (context.frame != state.first_frame) error.trail.push_back("in frame " + number_text(context.frame));
+    return error;
+  }
+  Graph graph = std::move(built).value();
   Dependencies depends = std::move(state.runtime->depends);
   std::string changing = first ? state.changed_when_repeated(context, graph) : "";
   if (!changing.empty()) diagnostics.warn_once(changing, changing);

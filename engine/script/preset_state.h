@@ -35,6 +35,7 @@ struct Preset::State {
   std::shared_ptr<const Explanation> explanation;  // of that
   bool may_change = false;
   std::uint64_t evaluations = 0, builds = 0;
+  double first_frame = 1;  ///< that was evaluated
 
   void load(lua_State* lua, const PresetOptions& options);
   void resolve(lua_State* lua, const BuildContext& context);

@@ -34,9 +34,9 @@ LiveBuilder::LiveBuilder(Device& device, std::filesystem::path preset, const Liv
       options_(options),
       diagnostics_(diagnostics),
       may_warm_up_(options.warm_up && WarmUp::helps(device)),
-      files_(options.watch, options.follow ? [this](Clock::time_point since,
-                                                    bool polled) { files_may_differ(since, polled); }
-                                           : Watcher::Look()) {
+      files_(options.watch, options.follow
+                                ? [this](Clock::time_point since, bool polled) { files_may_differ(since, polled); }
+                                : Watcher::Look()) {
   request_.overrides = options.stack.preset.overrides;
   request_.arguments = options.stack.preset.arguments;
   wanted_.request = true;

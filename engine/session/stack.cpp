@@ -185,6 +185,8 @@ Result<FrameWork> Stack::work(const FrameRequest& frame) {
                  .step = frame.step,
                  .restart = frame.restart};
   state_->cut(work.graph);
+  if (state_->options.copy_result && work.runs())
+    copy_result(work.graph, work.graph.passes[work.graph.images[work.graph.result].producer].effect);
   AFTERGLOW_CHECK(validate(work.graph));
   // Where nothing else runs, whoever has pictures encodes them; who records has nothing but what is recorded.
   const bool records = state_->programs && !state_->programs->options().own_images;

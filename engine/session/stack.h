@@ -37,6 +37,7 @@ struct StackOptions {
   /// At most so many rows an invocation, whatever calibration says. Fewer make large frames slower and shaders faster
   /// to compile; the pixels are the same.
   int most_rows = kMaxRows;
+  bool copy_result = false;               ///< the last effect's image is an image between passes like any other
   std::optional<ExecutionConfig> choice;  ///< execute so, whatever calibration and precision say
   std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
   /// Null: the stack's own. Its cache folder counts, and whoever made it calls Device::use_pipeline_cache.

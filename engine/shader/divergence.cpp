@@ -48,8 +48,8 @@ class Divergence {
       if (!divergent_.contains(label)) continue;
       for (std::size_t i = block.begin; i < block.end; ++i) {
         const Instruction& at = module_.code[i];
-        const bool waits = at.op == spv::OpControlBarrier ||
-                           (at.op == spv::OpFunctionCall && waiting_.contains(at.words[3]));
+        const bool waits =
+            at.op == spv::OpControlBarrier || (at.op == spv::OpFunctionCall && waiting_.contains(at.words[3]));
         if (waits) first = std::min(first.value_or(i), i);
       }
     }
@@ -263,16 +263,16 @@ class Divergence {
     diverge(ways);
     const auto leaves_to = [&](Id target) {
       if (target == block.merge) return false;
-      return std::ranges::count(block.next, target) > 0 || std::ranges::any_of(ways, [&](Id way) {
-               return std::ranges::count(blocks_.at(way).next, target) > 0;
-             });
+      return std::ranges::count(block.next, target) > 0 ||
+             std::ranges::any_of(ways, [&](Id way) { return std::ranges::count(blocks_.at(way).next, target) > 0; });
     };
     for (const Id header : block.loops) {
       const BasicBlock& loop = blocks_.at(header);
       if (leaves_to(loop.merge)) diverge_loop(header);
       if (leaves_to(loop.continues)) diverge(reached({block.merge}, {loop.continues, loop.merge}));
     }
-    if (std::ranges::any_of(ways, [&](Id way) { return blocks_.at(way).returns; })) diverge(reached({block.merge}, std::set<Id>()));
+    if (std::ranges::any_of(ways, [&](Id way) { return blocks_.at(way).returns; }))
+      diverge(reached({block.merge}, std::set<Id>()));
   }
 
   Id innermost(const BasicBlock& block) const {

@@ -44,7 +44,8 @@ std::string helper_signature(std::string_view name) {
   const std::string head = fmt::format(" {}(", name);
   for (const auto& line : split(std::string(prelude_text()), '\n')) {
     const auto at = line.find(head), end = line.find(") {");
-    if (at != std::string::npos && end != std::string::npos && at < line.find('(')) return line.substr(at + 1, end - at);
+    if (at != std::string::npos && end != std::string::npos && at < line.find('('))
+      return line.substr(at + 1, end - at);
   }
   return {};
 }

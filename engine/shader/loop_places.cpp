@@ -9,7 +9,8 @@ Result<std::vector<std::uint32_t>> loop_places(const std::string& glsl, GlslStag
   AFTERGLOW_TRY(const LinedModule lined, compile_with_lines(glsl, stage));
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i < lined.module.code.size(); ++i)
-    if (lined.module.code[i].op == spv::OpLoopMerge) out.insert(out.end(), {lined.places[i].file, lined.places[i].line});
+    if (lined.module.code[i].op == spv::OpLoopMerge)
+      out.insert(out.end(), {lined.places[i].file, lined.places[i].line});
   return out;
 }
 

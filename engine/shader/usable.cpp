@@ -68,7 +68,7 @@ std::string function_name(const Module& module, std::uint32_t id) {
 }
 
 Error error_at(const LinedModule& lined, std::optional<std::size_t> index, const AssembledKernel& assembled,
-         std::string message) {
+               std::string message) {
   const SourcePlace place = index ? lined.places[*index] : SourcePlace{};
   const bool known = index && place.file < assembled.file_names.size();
   return shader_error(known ? assembled.file_names[place.file] : "", known ? static_cast<int>(place.line) : 0,
@@ -88,14 +88,14 @@ Result<void> check_usable(const std::vector<std::uint32_t>& spirv, const Assembl
   if (ability) {
     const auto found = std::ranges::find_if(code, gathers_with_offsets);
     const bool placed = *ability == spv::CapabilityImageGatherExtended && found != code.end();
-    return error_at(lined, placed ? std::optional(static_cast<std::size_t>(found - code.begin())) : std::nullopt, assembled,
-              fmt::format("{} is not allowed: not all devices have it", name_of(*ability)));
+    return error_at(lined, placed ? std::optional(static_cast<std::size_t>(found - code.begin())) : std::nullopt,
+                    assembled, fmt::format("{} is not allowed: not all devices have it", name_of(*ability)));
   }
   const auto barrier = divergent_barrier(lined.module);
   const bool call = barrier && code[*barrier].op == spv::OpFunctionCall;
-  const std::string what =
-      call ? fmt::format("'{}' waits for all invocations of the workgroup", function_name(lined.module, code[*barrier].words[3]))
-           : "barrier() waits for all invocations of the workgroup";
+  const std::string what = call ? fmt::format("'{}' waits for all invocations of the workgroup",
+                                              function_name(lined.module, code[*barrier].words[3]))
+                                : "barrier() waits for all invocations of the workgroup";
   Error error = error_at(lined, barrier, assembled, what + ", but some do not come here");
   error.allowed =
       "outside of every `if` and loop whose condition differs between invocations, and before every return in one";

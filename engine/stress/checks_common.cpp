@@ -90,6 +90,28 @@ Result<Outcome> finite_fused(Harness& harness, const Situation& s, const Invaria
   return Outcome{};
 }
 
+/// What one frame hands on must not spoil the next, whatever comes: light that grows, goes out and comes again.
+Result<Outcome> finite_frames(Harness& harness, const Situation& s, const Invariant&) {
+  AFTERGLOW_TRY(const LookFacts facts, harness.facts(s.look, s.picture.color.size(), s.frame));
+  if (!facts.looks_back || !facts.runs) return not_applicable();
+  std::vector<Picture> frames;
+  for (const float light : {1.0f, 3.0f, 0.0f, 1.0f, 0.25f}) {
+    frames.push_back(changed(s.picture));
+    Image& color = frames.back().color;
+    for (std::size_t i = 0; i < color.pixels.size(); ++i)
+      if (i % 4 < 3) color.pixels[i] = std::min(color.pixels[i] * light, kLargestColor);
+  }
+  Random random(s.seed);
+  const Way way = random.chance(0.3) ? Way{.plain = true} : usual_way(harness);
+  AFTERGLOW_TRY(const auto made, harness.run_sequence(s.look, frames, s.frame, way));
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const std::string what = fmt::format("frame {} of a sequence, {}", i + 1, way.name());
+    if (auto outcome = all_finite(made[i].image, std::numeric_limits<float>::max(), what); !outcome.holds)
+      return outcome;
+  }
+  return Outcome{};
+}
+
 Result<Outcome> alpha(Harness& harness, const Situation& s, const Invariant&) {
   for (const bool plain : {false, true}) {
     Way way = usual_way(harness);
@@ -121,7 +143,7 @@ Result<Outcome> same_ways(Harness& harness, const Situation& s, const Invariant&
   AFTERGLOW_TRY(const Made plain, harness.run(s.look, s.picture, s.frame, {.plain = true}));
   Outcome worst;
   for (const ExecutionConfig& choice : {harness.usual(), random.pick(other_choices())}) {
-    const Way way{.choice = choice};
+    const Way way{.choice = choice, .copied = choice.compute};  // else the last pass would be drawn in any case
     AFTERGLOW_TRY(const Made made, harness.run(s.look, s.picture, s.frame, way));
     Outcome outcome = compare(made.image, plain.image, way.choice.compute ? kRegrouped : kSame,
                               way.name() + " against plain", MeasuredBy::pixel);
@@ -140,13 +162,32 @@ Rect random_part(Size size, Random& random) {
   return part;
 }
 
-/// A region is the crop of the whole, bit for bit. What is not read of the source must not matter.
+/// Other pixels wherever nothing is to be read.
+void spoil_outside(Image& image, const Rect& read) {
+  constexpr float kOther = 12.5f;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      if (x >= read.x && x < read.x + read.width && y >= read.y && y < read.y + read.height) continue;
+      for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] = c < 3 ? image.at(x, y)[c] * 0.5f + kOther : 0.5f;
+    }
+}
+
+/// A region is the crop of the whole, bit for bit. What is not read of the source must not matter: what an effect reads
+/// beyond the reach that it states is other pixels here.
 Result<Outcome> region(Harness& harness, const Situation& s, const Invariant&) {
   Random random(s.seed);
   Way way = random.chance(0.3) ? half_way(harness) : usual_way(harness);
   AFTERGLOW_TRY(const Made whole, harness.run(s.look, s.picture, s.frame, way));
   way.region = random_part(s.picture.color.size(), random);
-  AFTERGLOW_TRY(const Made part, harness.run(s.look, s.picture, s.frame, way));
+  AFTERGLOW_TRY(const auto read, harness.read_of_inputs(s.look, s.picture, s.frame, way));
+  Picture spoiled = changed(s.picture);
+  for (const auto& [name, rect] : read) {
+    if (name == "source")
+      spoil_outside(spoiled.color, rect);
+    else if (const auto found = spoiled.auxiliary.find(name); found != spoiled.auxiliary.end())
+      spoil_outside(found->second, rect);
+  }
+  AFTERGLOW_TRY(const Made part, harness.run(s.look, spoiled, s.frame, way));
   return compare(cropped(part.image, *way.region), cropped(whole.image, *way.region), 0, way.name());
 }
 
@@ -178,6 +219,7 @@ Result<Outcome> rebuilt(Harness& harness, const Situation& s, const Invariant&) 
 constexpr Check kCommonChecks[] = {
     {"finite", nullptr, "nothing non-finite leaves any pass, each on its own in full floats", finite},
     {"finite_fused", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_fused},
+    {"finite_frames", nullptr, "nor does what one frame hands on make a later one so", finite_frames},
     {"alpha", nullptr, "alpha is the source's, bit for bit", alpha},
     {"repeated", nullptr, "the same picture again gives the same bits", repeated},
     {"rebuilt", nullptr, "build makes the same graph again, whatever frame was built in between", rebuilt},

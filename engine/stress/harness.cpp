@@ -23,11 +23,11 @@ struct Prepared {
 
 namespace {
 
-BuildContext context_for(Size size, double frame) {
+BuildContext context_for(Size size, double frame, bool restart = true) {
   BuildContext context{.size = size, .auxiliary = auxiliary_sizes(size)};
   context.frame = frame;
   context.time = (frame - 1) / context.fps;
-  context.restart = true;
+  context.restart = restart;
   return context;
 }
 
@@ -62,6 +62,7 @@ Made untouched(const Picture& picture) { return {.image = picture.color}; }
 std::string Way::name() const {
   std::string out = plain ? "plain" : execution_name(choice);
   if (skip_idle) out += ", idle effects left out";
+  if (copied) out += ", result copied";
   if (region) out += fmt::format(", region {},{},{},{}", region->x, region->y, region->width, region->height);
   if (!show.empty()) out += ", image " + show;
   return out;
@@ -83,13 +84,15 @@ struct Harness::State {
     out.reference = way.plain;
     if (!way.plain) out.choice = way.choice;
     out.skip_idle = way.skip_idle;
+    out.copy_result = way.copied;
     out.shared = shared;
     out.max_memory = 16ull << 30;
     return out;
   }
-  Result<Made> run(const Look& look, const Picture& picture, double frame, const Way& way);
+  Result<Made> run(const Look& look, const Picture& picture, double frame, const Way& way, bool restart = true);
   Result<LookFacts> find_facts(const Look& look, Size size, double frame);
-  Result<Prepared*> prepare(const Look& look, const Way& way, const Picture& picture, double frame);
+  Result<Prepared*> prepare(const Look& look, const Way& way, const Picture& picture, double frame,
+                            bool restart = true);
 };
 
 Harness::Harness(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -116,7 +119,8 @@ void Harness::forget() {
   state_->known.clear();
 }
 
-Result<Prepared*> Harness::State::prepare(const Look& look, const Way& way, const Picture& picture, double frame) {
+Result<Prepared*> Harness::State::prepare(const Look& look, const Way& way, const Picture& picture, double frame,
+                                          bool restart) {
   const Size size = picture.color.size();
   const std::string key = fmt::format("{}\n{}\n{}x{}", look.text(), way.name(), size.width, size.height);
   Prepared& one = prepared[key];
@@ -127,7 +131,7 @@ Result<Prepared*> Harness::State::prepare(const Look& look, const Way& way, cons
     one.stack->show(way.show);
     AFTERGLOW_TRY(one.renderer, Renderer::create(*device, {.max_memory = 16ull << 30}));
   }
-  AFTERGLOW_CHECK(one.stack->prepare(context_for(size, frame), {}, way.region));
+  AFTERGLOW_CHECK(one.stack->prepare(context_for(size, frame, restart), {}, way.region));
   return &one;
 }
 
@@ -140,8 +144,32 @@ Result<Made> Harness::run(const Look& look, const Picture& picture, double frame
   return state_->results[key] = std::move(made);
 }
 
-Result<Made> Harness::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
-  AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
+Result<std::vector<Made>> Harness::run_sequence(const Look& look, const std::vector<Picture>& pictures, double first,
+                                                const Way& way) {
+  std::vector<Made> out;
+  for (const Picture& picture : pictures) {
+    const bool begins = out.empty();
+    AFTERGLOW_TRY(Made made, state_->run(look, picture, first + static_cast<double>(out.size()), way, begins));
+    out.push_back(std::move(made));
+  }
+  return out;
+}
+
+Result<std::map<std::string, Rect>> Harness::read_of_inputs(const Look& look, const Picture& picture, double frame,
+                                                            const Way& way) {
+  AFTERGLOW_TRY(Prepared* const one, state_->prepare(look, way, picture, frame));
+  std::map<std::string, Rect> out;
+  if (!one->stack->runs()) return out;
+  const Program& program = *one->stack->program();
+  const Graph& graph = program.graph();
+  const auto& parts = program.parts().images;
+  out["source"] = parts[graph.source];
+  for (const auto& [name, image] : graph.auxiliary) out[name] = parts[image];
+  return out;
+}
+
+Result<Made> Harness::State::run(const Look& look, const Picture& picture, double frame, const Way& way, bool restart) {
+  AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame, restart));
   if (!one->stack->runs()) return untouched(picture);
   AFTERGLOW_TRY(RenderRequest request, one->stack->request(request_for(one->stack->build(), {}, way.region)));
   request.inputs = picture_inputs(picture, request.work.graph);
@@ -205,6 +233,7 @@ Result<LookFacts> Harness::State::find_facts(const Look& look, Size size, double
                   .images = {}};
   facts.passes = graph.passes.size();
   facts.divides = straight_passes(graph) > 0;
+  facts.looks_back = !graph.histories.empty();
   for (const auto& pass : graph.passes) {
     const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
     if (pass.output != graph.result && image.size == size) facts.images.push_back(image.name);

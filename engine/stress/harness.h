@@ -22,6 +22,7 @@ struct Way {
   ExecutionConfig choice;  ///< ignored with `plain`
   bool plain = false;      ///< every pass on its own in full floats (StackOptions::reference)
   bool skip_idle = false;  ///< effects that the content makes idle are left out, as `run` does
+  bool copied = false;     ///< the result is copied: its last pass runs as one in the middle does
   std::optional<Rect> region;
   std::string show;  ///< the image that takes the result's place; empty: the result
   std::string name() const;
@@ -39,9 +40,10 @@ struct LookFacts {
   std::vector<Invariant> invariants;      ///< promises of a stack of one effect that is not faded, blended or masked
   std::optional<double> error;  ///< against double precision, in full floats, as far as its effects promise it
   bool runs = false;
-  std::string left_out;  ///< why the first entry that does not run is left out; empty: all run
-  std::string changing;  ///< Build::changing
-  bool divides = false;  ///< by alpha, unless that is 1 everywhere
+  std::string left_out;     ///< why the first entry that does not run is left out; empty: all run
+  std::string changing;     ///< Build::changing
+  bool divides = false;     ///< by alpha, unless that is 1 everywhere
+  bool looks_back = false;  ///< a frame hands something on to the next
   std::size_t passes = 0;
   std::vector<std::string> images;  ///< names of those that passes make as large as the picture: Way::show takes them
 };
@@ -57,6 +59,12 @@ class Harness {
   /// The result of a stack for a picture, which begins a sequence. Of a picture whose `content` is known, a result that
   /// was made before is given again. Errors: as of Stack::prepare and FrameRunner::run.
   Result<Made> run(const Look& look, const Picture& picture, double frame, const Way& way);
+  /// The results of frames that follow each other, the first without one before it. All have the same size.
+  Result<std::vector<Made>> run_sequence(const Look& look, const std::vector<Picture>& pictures, double first,
+                                         const Way& way);
+  /// What the region of `way` reads of each input of the picture, by name; nothing where nothing runs.
+  Result<std::map<std::string, Rect>> read_of_inputs(const Look& look, const Picture& picture, double frame,
+                                                     const Way& way);
   /// Every image that the passes make, by name, when each runs on its own in full floats.
   Result<std::vector<std::pair<std::string, Image>>> images(const Look& look, const Picture& picture, double frame);
   /// Errors: script (the effect refuses the settings, or its script fails), io (images larger than is tried).

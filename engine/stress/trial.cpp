@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "reference/stack.h"
 #include "stress/settings.h"
 
 namespace afterglow::stress {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr int kPicturesPerTrial = 3;
 constexpr const char* kComposition = "composition";
+const std::string kOfMasks = "mask.";
 
 /// Small ones come often: they are quick, and hold as many edges.
 Size random_size(Random& random) {
@@ -56,30 +58,54 @@ Trial Trials::at(std::uint64_t index) const {
   return trial;
 }
 
+namespace {
+
+/// A promise that nothing can be held to.
+void warn_without_oracle(const EffectSchema& effect, Diagnostics& diagnostics) {
+  const auto of_error = [](const InvariantSchema& hold) { return hold.stated.name == "error"; };
+  if (std::ranges::none_of(effect.invariants, of_error)) return;
+  const reference::Entry entry{.effect = effect.name, .settings = {}};
+  if (reference::effect_without_oracle({&entry, 1}).empty()) return;
+  diagnostics.warn(fmt::format(
+      "effect '{}' promises an error (`holds`), but there is no oracle of it: nothing checks that", effect.name));
+}
+
+}  // namespace
+
 Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>& names,
                                                  const std::vector<std::filesystem::path>& paths,
                                                  Diagnostics& diagnostics) {
   const SearchPath path = search_path_for({}, paths);
   AFTERGLOW_TRY(auto effects, list_effects(path, diagnostics));
+  AFTERGLOW_TRY(auto masks, list_masks(path, diagnostics));
   std::vector<std::string> known;
   for (const auto& effect : effects) known.push_back(effect.name);
   known.emplace_back(kComposition);
-  for (const auto& name : names)
-    if (std::ranges::find(known, name) == known.end())
-      return Error{ErrorKind::usage,         fmt::format("unknown effect '{}'", name), {}, 0, join(known),
-                   nearest_name(name, known)};
+  for (const auto& mask : masks) known.push_back(kOfMasks + mask.name);
+  for (const auto& name : names) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    if (auto error = effect_error(path, name)) return *std::move(error);
+    return Error{ErrorKind::usage,         fmt::format("unknown effect '{}'", name), {}, 0, join(known),
+                 nearest_name(name, known)};
+  }
+  const auto wanted = [&](const std::string& name) {
+    return names.empty() || std::ranges::find(names, name) != names.end();
+  };
   std::vector<Subject> out;
   for (const auto& effect : effects) {
-    if (!names.empty() && std::ranges::find(names, effect.name) == names.end()) continue;
+    if (!wanted(effect.name)) continue;
+    if (!names.empty()) warn_without_oracle(effect, diagnostics);
     Subject subject{.name = effect.name, .looks = {}, .effect = {}};
     for (auto& entry : hard_entries(effect, path)) subject.looks.push_back({{std::move(entry)}, paths});
     subject.effect = effect;
     out.push_back(std::move(subject));
   }
-  if (!names.empty() && std::ranges::find(names, kComposition) == names.end()) return out;
-  Subject composition{.name = kComposition, .looks = {{{}, paths}}, .effect = {}, .composed = std::move(effects)};
-  AFTERGLOW_TRY(composition.masks, list_masks(path, diagnostics));
-  out.push_back(std::move(composition));
+  const auto add_composition = [&](const std::string& name, const std::vector<EffectSchema>& by) {
+    out.push_back({.name = name, .looks = {{{}, paths}}, .effect = {}, .composed = effects, .masks = by});
+  };
+  if (wanted(kComposition)) add_composition(kComposition, masks);
+  for (const auto& mask : masks)  // without names they are part of the composition
+    if (!names.empty() && wanted(kOfMasks + mask.name)) add_composition(kOfMasks + mask.name, {mask});
   return out;
 }
 

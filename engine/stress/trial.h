@@ -47,8 +47,7 @@ class Trials {
 };
 
 /// Every effect on the path, each by itself, and "composition": random stacks of them with groups; or those of these
-/// names. Errors: usage
-/// (unknown name), script.
+/// names; "mask.NAME" is compositions with that mask alone. Errors: usage (unknown name), script.
 Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>& names,
                                                  const std::vector<std::filesystem::path>& paths,
                                                  Diagnostics& diagnostics);

@@ -97,6 +97,28 @@ TEST_F(PresetErrors, EveryGlslErrorHasItsFileAndLine) {
   }
 }
 
+TEST_F(PresetErrors, CheckCompilesWhatRunsInALaterFrame) {
+  make_effect("vec4 apply(vec4 color) {\n  return colour;\n}\n");
+  const auto check = [&](const std::string& opacity, std::vector<std::string> more = {}) {
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.mine { opacity = " + opacity + " } }\n");
+    more.insert(more.begin(), {"check", "look.lua"});
+    return run(more);
+  };
+  for (const char* opacity : {"fx.curve { { 1, 0 }, { 5, 1 } }", "function(t) return t.frame > 100 and 1 or 0 end"}) {
+    const Outcome later = check(opacity);
+    EXPECT_EQ(later.exit_code, kScript) << opacity;
+    EXPECT_THAT(later.err, HasSubstr("mine.glsl:2: error: 'colour'")) << opacity;
+  }
+  const Outcome never = check("fx.curve { { 3000, 0 }, { 5000, 1 } }");
+  EXPECT_EQ(never.exit_code, kDone) << never.err;
+  EXPECT_THAT(never.out,
+              HasSubstr("note: 'mine' runs in none of the frames that were tried: its shaders are not compiled"));
+  EXPECT_EQ(check("fx.curve { { 3000, 0 }, { 5000, 1 } }", {"--frame", "4000"}).exit_code, kScript);
+  const Outcome off = check("0");
+  EXPECT_EQ(off.exit_code, kDone) << off.err;
+  EXPECT_EQ(off.out.find("note:"), std::string::npos) << off.out;
+}
+
 TEST_F(PresetErrors, GlslErrorNamesTheAuthorsFileAndLine) {
   make_effect("// a comment\nvec4 apply(vec4 color) {\n  return colour;\n}\n");
   make_exr("a.exr");

@@ -76,6 +76,18 @@ TEST_F(Sequence, ScriptErrorStopsAtOnce) {
   EXPECT_THAT(outputs(), IsEmpty());
 }
 
+TEST_F(Sequence, AnErrorOfOneFrameNamesIt) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.mine {} }\n");
+  write("effects/mine.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.effect { name = \"mine\", doc = \"A test.\", at = \"post_process\", order = 1, settings = {},\n"
+        "  build = function(g, s, source) if g.frame == 3 then return nil end return source end }\n");
+  const Outcome outcome = run_all();
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_THAT(outcome.err, HasSubstr("returned nil, not an image"));
+  EXPECT_THAT(outcome.err, HasSubstr("in frame 3\n"));
+}
+
 TEST_F(Sequence, WithoutResumeEverythingIsMadeAgain) {
   ASSERT_EQ(run_all().exit_code, kDone);
   ASSERT_EQ(run_all({"--report", "report.json"}).exit_code, kDone);

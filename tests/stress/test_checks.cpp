@@ -27,6 +27,14 @@ const BadEffect kBad[] = {
      "reach = 1",
      "render",
      {64, 64}},
+    // What is beyond the reach is read of the picture itself, which has all of its pixels.
+    {"region",
+     "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return vec4(fetch(source, p + ivec2(20, 0)).rgb, "
+     "fetch(source, p).a); }",
+     "",
+     "reach = 0",
+     "render",
+     {64, 64}},
     {"idle", "vec4 apply(vec4 color) { return vec4(color.rgb * 0.5, color.a); }"},
     {"rebuilt", "vec4 apply(vec4 color) { return vec4(color.rgb * strength, color.a); }", "",
      "strength = (function() made = (made or 0) + 1 return 1 / made end)()"},
@@ -96,7 +104,8 @@ TEST(StressChecks, AGoodEffectPassesAll) {
   const Look look = folder.look("honest");
   for (const auto& kind : picture_kinds())
     for (const Check& check : checks()) {
-      if (!kind.gentle || std::string(check.name).starts_with("error")) continue;
+      const std::string name = check.name;
+      if (!kind.gentle || name.starts_with("error") || name == "finite_frames") continue;
       const Outcome outcome = outcome_of(situation(look, check.name, {kind.name, {24, 24}, 3}));
       EXPECT_TRUE(outcome.applies) << check.name;
       EXPECT_TRUE(outcome.holds) << check.name << " on " << kind.name << ": " << outcome.what;
@@ -104,14 +113,52 @@ TEST(StressChecks, AGoodEffectPassesAll) {
   EXPECT_EQ(validation_errors(), 0);
 }
 
+TEST(StressChecks, APassOfTwoWaysThatDifferIsCaughtWhereItIsTheLast) {
+  const EffectFolder folder;
+  const std::string uniforms = "uniform sampler2D source;\n";
+  folder.effect("two", uniforms + "vec4 sample_at(ivec2 p) { return fetch(source, p); }", "",
+                "compute = \"two/group\"");
+  folder.write("shaders/two/group.glsl",
+               "layout(local_size_x = 16, local_size_y = 8) in;\nuniform float strength;\nuniform float level;\n" +
+                   uniforms +
+                   "vec4 compute_at(ivec2 p) { vec4 c = fetch(source, p); return vec4(c.rgb * 1.001, c.a); }\n");
+  bool caught = false;
+  for (std::uint64_t seed = 1; seed <= 40 && !caught; ++seed)
+    caught = !outcome_of(situation(folder.look("two"), "same_ways", {"render", {33, 18}, seed}, seed)).holds;
+  EXPECT_TRUE(caught);
+}
+
+TEST(StressChecks, WhatAFrameHandsOnIsLookedAt) {
+  const EffectFolder folder;
+  folder.write("effects/after.lua", R"(local fx = require "afterglow"
+return fx.effect { name = "after", doc = "Made for a test.", settings = {},
+  build = function(g, s, source)
+    local before = g:history { name = "before", size = source, pre_roll = 1 }
+    local now = g:pass { shader = "after/after", source = source, before = before }
+    g:keep(before, now)
+    return now
+  end })");
+  const auto outcome = [&](const std::string& shader) {
+    folder.write("shaders/after/after.glsl", "vec4 apply(vec4 c, vec4 before) { return vec4(" + shader + ", c.a); }\n");
+    harness().forget();
+    return outcome_of(situation(folder.look("after"), "finite_frames", {"render", {33, 18}, 3}));
+  };
+  EXPECT_TRUE(outcome("0.5 * (c.rgb + before.rgb)").holds);
+  const Outcome bad = outcome("c.rgb / (1.0 - before.a)");
+  EXPECT_FALSE(bad.holds);
+  EXPECT_NE(bad.what.find("frame 2 of a sequence"), std::string::npos) << bad.what;
+  folder.effect("plain", "vec4 apply(vec4 c) { return c; }");
+  EXPECT_FALSE(outcome_of(situation(folder.look("plain"), "finite_frames", {"render", {8, 8}, 1})).applies);
+}
+
 TEST(StressChecks, EveryPromiseHasACheckAndEveryCheckABreaker) {
   for (const auto& kind : invariant_kinds())
     EXPECT_TRUE(std::ranges::any_of(checks(), [&](const Check& c) { return c.promise && kind.name == c.promise; }))
         << kind.name;
   for (const Check& check : checks()) {
-    // What no effect can break; errors have a test of their own.
+    // What no effect can break, and what has a test of its own.
     const std::string name = check.name;
-    if (name == "repeated" || name == "same_ways" || name.starts_with("error")) continue;
+    if (name == "repeated" || name == "same_ways" || name == "finite_frames" || name.starts_with("error")) continue;
     EXPECT_TRUE(std::ranges::any_of(kBad, [&](const BadEffect& bad) { return name == bad.check; })) << name;
   }
 }

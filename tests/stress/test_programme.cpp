@@ -42,6 +42,49 @@ TEST(StressProgramme, TrialsAreMadeFromSeedAndNumberAlone) {
   EXPECT_EQ(a.at(0).look.line(), "fx.good {}");
 }
 
+TEST(StressProgramme, AMaskIsTriedInCompositionsWithItAlone) {
+  const EffectFolder folder;
+  folder.write("masks/half.lua", R"(local fx = require "afterglow"
+return fx.effect { name = "half", doc = "Made for a test.", settings = {},
+  build = function(g, s, source) return g:pass { shader = "half/half", source = source } end })");
+  folder.write("shaders/half/half.glsl", "vec4 apply(vec4 c) { return vec4(0.5); }\n");
+  const Trials trials = trials_of(folder, {"mask.half"}, 5);
+  int masked = 0;
+  for (std::uint64_t index = 1; index < 40; ++index) {
+    const std::string line = trials.at(index).look.line();
+    masked += line.find("fx.mask.half") != std::string::npos;
+    EXPECT_EQ(line.find("fx.mask.luma"), std::string::npos) << line;
+  }
+  EXPECT_GT(masked, 10);
+}
+
+TEST(StressProgramme, AnEffectThatCannotBeReadIsTheError) {
+  const EffectFolder folder;
+  folder.effect("bad", "vec4 apply(vec4 color) { return color; }", "holds = { \"blakc\" },");
+  harness();
+  Diagnostics quiet;
+  const auto subjects = subjects_of_effects({"bad"}, {folder.path()}, quiet);
+  ASSERT_FALSE(subjects);
+  EXPECT_EQ(subjects.error().kind, ErrorKind::script);
+  EXPECT_NE(subjects.error().text().find("unknown promise \"blakc\""), std::string::npos) << subjects.error().text();
+  const auto unknown = subjects_of_effects({"blom"}, {folder.path()}, quiet);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().nearest, "bloom");
+}
+
+TEST(StressProgramme, APromiseWithoutAnOracleIsTold) {
+  const EffectFolder folder;
+  folder.effect("own", "vec4 apply(vec4 color) { return color * level; }", "holds = { error = { fp16 = 1e-9 } },");
+  harness();
+  std::string said;
+  Diagnostics heard([&](Severity, const std::string& text) { said += text; });
+  ASSERT_TRUE(subjects_of_effects({"own"}, {folder.path()}, heard));
+  EXPECT_NE(said.find("effect 'own' promises an error"), std::string::npos) << said;
+  said.clear();
+  ASSERT_TRUE(subjects_of_effects({"vignette"}, {folder.path()}, heard));
+  EXPECT_EQ(said, "");
+}
+
 TEST(StressProgramme, FindsShrinksAndKeepsAFault) {
   const EffectFolder folder;
   folder.effect("broken", kBroken);

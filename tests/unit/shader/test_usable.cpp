@@ -28,9 +28,11 @@ struct Case {
 };
 
 std::string shader_of(const Case& c) {
-  return std::string("layout(local_size_x = 16, local_size_y = 8) in;\n#include \"lib/wait.glsl\"\nuniform sampler2D "
-                     "source;\nuniform float v;\n") +
-         c.before + "\nvec4 compute_at(ivec2 pixel) {\nvec4 c = fetch(source, pixel);\n" + c.body + "\nreturn c * v;\n}\n";
+  return std::string(
+             "layout(local_size_x = 16, local_size_y = 8) in;\n#include \"lib/wait.glsl\"\nuniform sampler2D "
+             "source;\nuniform float v;\n") +
+         c.before + "\nvec4 compute_at(ivec2 pixel) {\nvec4 c = fetch(source, pixel);\n" + c.body +
+         "\nreturn c * v;\n}\n";
 }
 
 class DivergentBarrier : public testing::TestWithParam<Case> {};
@@ -49,7 +51,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"for (int i = 0; i < 5; ++i) { if (c.r > 0.1 * float(i)) break; barrier(); }"},
         Case{"for (int i = 0; i < 5; ++i) { if (c.r > 0.1 * float(i)) continue; barrier(); }"},
         Case{"int i = 0; do { barrier(); ++i; } while (i < int(gl_LocalInvocationIndex));"},
-        Case{"int k = 0; while (k < 3) { if (gl_LocalInvocationID.x == 2u) { if (v > 0.5) return c; } ++k; } barrier();"},
+        Case{"int k = 0; while (k < 3) { if (gl_LocalInvocationID.x == 2u) { if (v > 0.5) return c; } ++k; } "
+             "barrier();"},
         Case{"switch (int(c.r)) { case 0: c.r = 1.0; break; case 1: barrier(); break; default: break; }"},
         Case{"bool b = v > 1.0 && c.r > 0.2; if (b) barrier();"},
         Case{"int n = c.r > 0.5 ? 2 : 3; for (int i = 0; i < n; ++i) barrier();"},
@@ -109,8 +112,9 @@ TEST(Usable, WhatBeginnersWriteIsAnsweredWithWhatToWrite) {
   EXPECT_THAT(sample("v = 2.0; return vec4(v);"),
               HasSubstr("x.glsl:4: error: a uniform cannot be written to; copy it into a variable"));
   EXPECT_THAT(said_of("vec4 apply(vec4 c) { return c; }\nfloat f(float x);\nfloat g(float x) { return x; }\n"), "ok");
-  EXPECT_THAT(said_of("float g(float x) { return x; }\nfloat f(float x);\nvec4 apply(vec4 c) { return vec4(f(c.r)); }\n"),
-              HasSubstr("x.glsl:2: error: 'f' is declared here, but defined nowhere"));
+  EXPECT_THAT(
+      said_of("float g(float x) { return x; }\nfloat f(float x);\nvec4 apply(vec4 c) { return vec4(f(c.r)); }\n"),
+      HasSubstr("x.glsl:2: error: 'f' is declared here, but defined nowhere"));
 }
 
 }  // namespace
