@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/text.h"
 #include "graph/history.h"
@@ -293,7 +294,8 @@ void GraphBuilder::bind_param(Pass& pass, const Argument& argument, const Shader
   const bool integer = param.type == ParamType::int1 || param.type == ParamType::int2;
   for (std::size_t i = 0; i < components; ++i) {
     if (!std::isfinite(static_cast<float>(v[i]))) wrong("not finite");
-    if (integer && (v[i] != std::floor(v[i]) || std::abs(v[i]) > 2147483647.0)) wrong("not an integer");
+    if (integer && v[i] != std::floor(v[i])) wrong("not an integer");
+    if (integer && std::abs(v[i]) > std::numeric_limits<int>::max()) wrong("no integer of 32 bits");
   }
   if (param.specialised)
     pass.constants[param.name] = v[0];

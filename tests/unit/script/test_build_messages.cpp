@@ -113,6 +113,8 @@ TEST_F(BuildMessages, WrongValues) {
             kAt5 + "steps = 1.5 is not an integer; allowed: an integer");
   EXPECT_EQ(gain("gain = 1, high = source, steps = 1, on = 1, tint = { 1, 2, 3 }"),
             kAt5 + "on = 1 is not a boolean; allowed: true, false");
+  EXPECT_EQ(gain(kRest + ", gain = 1, taps = 0xdeadbeef"),
+            kAt5 + "taps = 3735928559 is no integer of 32 bits; allowed: an integer");
   EXPECT_EQ(gain(kRest + ", gain = 1, taps = 2.5"), kAt5 + "taps = 2.5 is not an integer; allowed: an integer");
   EXPECT_EQ(gain("high = 5"), kAt5 + "high = 5 is not an image");
 }

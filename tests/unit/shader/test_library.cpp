@@ -64,6 +64,7 @@ TEST(ShaderLibrary, UnknownNamesGetTheNearest) {
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().text(), "error: unknown shader 'bloom/treshold'; did you mean 'bloom/threshold'?");
   EXPECT_EQ(result.error().kind, ErrorKind::script);
+  EXPECT_EQ(library.find("bloom/threshold.glsl").error().nearest, "bloom/threshold");
   EXPECT_THAT(library.names(), ElementsAre("bloom/threshold"));
 }
 
