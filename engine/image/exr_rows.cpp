@@ -88,6 +88,10 @@ void ExrColorRows::warn_of_overflow(Diagnostics& diagnostics) const {
     diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_.load()));
 }
 
+Imath::Box2i exr_window(const Rect& rect) {
+  return {{rect.x, rect.y}, {rect.x + rect.width - 1, rect.y + rect.height - 1}};
+}
+
 Result<void> set_compression(Imf::Header& header, const std::string& text) {
   AFTERGLOW_TRY(const Compression wanted, parse_compression(text.empty() ? "zip" : text));
   constexpr std::array kNames{"none",  "rle", "zips", "zip",  "piz",

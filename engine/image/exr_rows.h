@@ -2,6 +2,7 @@
 // Rows of a picture's colour in the form that OpenEXR writes.
 #pragma once
 
+#include <ImathBox.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 
@@ -44,6 +45,9 @@ class ExrColorRows {
   std::vector<float> floats_;
   std::atomic<std::uint64_t> overflows_ = 0;
 };
+
+/// A picture's window as OpenEXR has it.
+Imath::Box2i exr_window(const Rect& rect);
 
 /// Sets compression and its level from the options: ZIP and level 1 by default, which is twice as fast as zlib's 4 and
 /// makes files of the same size (exr_zip.h).

@@ -328,6 +328,17 @@ Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& par
   return not_found(parts, layers, "depth channel", name);
 }
 
+std::vector<std::string> depth_channels(const FilePart& part) {
+  std::vector<std::string> names;
+  for (const Layer& layer : layers_of({part})) {
+    const int found = depth_of(layer, true);
+    for (const int channel : layer.channels)
+      if (channel == found || (named_depth(layer) && channel != alpha_of(layer)))
+        names.push_back(part.channels[static_cast<std::size_t>(channel)]);
+  }
+  return names;
+}
+
 Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& parts, const std::string& name,
                                                  const ChannelChoice* color) {
   const std::vector<Layer> layers = layers_of(parts);

@@ -55,8 +55,11 @@ Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& pa
 Result<std::optional<ChannelChoice>> find_motion(const std::vector<FilePart>& parts, const std::string& name,
                                                  const ChannelChoice* color);
 
-/// A layer by name, one to four channels in their usual order (R G B A, X Y Z, …), or a single channel. Nothing: there
-/// is none of that name, or several whose names end so.
+/// The channels of a part whose names say that they are depth.
+std::vector<std::string> depth_channels(const FilePart& part);
+
+/// A layer by name, one to four channels in their usual places (R G B A, X Y Z, …; −1: it has not this one), or a
+/// single channel; a single alpha four times. Nothing: there is none of that name, or several whose names end so.
 std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, const std::string& name);
 
 /// The names that `find_layer` knows, without those of single channels.

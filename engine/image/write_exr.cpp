@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "image/write_exr.h"
 
-#include <ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfOutputFile.h>
 
@@ -13,16 +12,10 @@
 #include "image/output_metadata.h"
 
 namespace afterglow {
-namespace {
-
-Imath::Box2i box(const Rect& rect) { return {{rect.x, rect.y}, {rect.x + rect.width - 1, rect.y + rect.height - 1}}; }
-
-}  // namespace
-
 Result<void> write_exr(const Picture& picture, OutputFile& out, const std::string& name, const WriteOptions& options,
                        Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));
-  Imf::Header header(box(picture.display_window), box(picture.data_window));
+  Imf::Header header(exr_window(picture.display_window), exr_window(picture.data_window));
   header.channels() = Imf::ChannelList();
   if (picture.facts) add_kept_attributes(header, *picture.facts);
   AFTERGLOW_CHECK(set_compression(header, options.compression));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDeepScanLineInputPart.h>
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
@@ -17,11 +18,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "image/exr_kept_channels.h"
 #include "image/exr_line_writer.h"
 #include "image/exr_rows.h"
 #include "image/metadata.h"
@@ -29,55 +30,6 @@
 
 namespace afterglow {
 namespace {
-
-/// Channels of the colour's part that are not the colour: read and written in their own types, strip by strip.
-class OtherChannels {
- public:
-  OtherChannels(const Imf::Header& header, const std::vector<std::string>& replaced) {
-    for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
-      if (std::find(replaced.begin(), replaced.end(), it.name()) == replaced.end())
-        channels_.push_back({it.name(), it.channel(), {}});
-  }
-
-  /// Channels at less than full resolution are not copied here. Errors: io.
-  Result<void> check() const {
-    for (const Other& other : channels_)
-      if (other.channel.xSampling != 1 || other.channel.ySampling != 1)
-        return Error{ErrorKind::io, fmt::format("cannot keep the sub-sampled channel '{}'", other.name)};
-    return {};
-  }
-  void add_channels(Imf::Header& header) const {
-    for (const Other& other : channels_) header.channels().insert(other.name, other.channel);
-  }
-  /// Slices for `rows` rows from row `y` (in the file's coordinates) of a window.
-  void add_slices(const Imath::Box2i& window, int y, int rows, Imf::FrameBuffer& buffer) {
-    const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
-    for (Other& other : channels_) {
-      const std::size_t sample = other.channel.type == Imf::HALF ? 2 : 4;
-      other.samples.resize(width * static_cast<std::size_t>(rows) * sample);
-      buffer.insert(other.name, Imf::Slice::Make(other.channel.type, other.samples.data(), Imath::V2i(window.min.x, y),
-                                                 static_cast<int64_t>(width), rows, sample, sample * width));
-    }
-  }
-  /// Row `row` of those slices, into a line of a file with this header: see ExrLineWriter.
-  void put_row(const Imf::Header& header, int row, std::uint8_t* line) const {
-    const auto width = static_cast<std::size_t>(header.dataWindow().max.x - header.dataWindow().min.x + 1);
-    for (const Other& other : channels_) {
-      const std::size_t bytes = width * (other.channel.type == Imf::HALF ? 2 : 4);
-      std::memcpy(line + channel_place(header, other.name),
-                  other.samples.data() + bytes * static_cast<std::size_t>(row), bytes);
-    }
-  }
-  bool empty() const { return channels_.empty(); }
-
- private:
-  struct Other {
-    std::string name;
-    Imf::Channel channel;
-    std::vector<char> samples;
-  };
-  std::vector<Other> channels_;
-};
 
 /// What the colour's layer looks like in the new file.
 struct Replacement {
@@ -113,12 +65,12 @@ Result<void> check_unchanged(const Imf::MultiPartInputFile& input, const FileFac
   return {};
 }
 
-Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const ExrColorRows& color,
-                         const OtherChannels& others) {
+Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const Imath::Box2i& window,
+                         const ExrColorRows& color, const ExrKeptChannels& others) {
   // Built anew rather than by erasing from a copy: Header::erase of OpenEXR 3.1 leaks.
-  constexpr std::array<std::string_view, 6> kGone{"tiles",         "preview", "chunkCount", "dwaCompressionLevel",
-                                                  "textureformat", "channels"};
-  Imf::Header header(old.displayWindow(), old.dataWindow());
+  constexpr std::array<std::string_view, 7> kGone{"tiles",         "preview",  "chunkCount", "dwaCompressionLevel",
+                                                  "textureformat", "channels", "dataWindow"};
+  Imf::Header header(old.displayWindow(), window);
   for (auto it = old.begin(); it != old.end(); ++it)
     if (std::find(kGone.begin(), kGone.end(), it.name()) == kGone.end()) header.insert(it.name(), it.attribute());
   header.channels() = Imf::ChannelList();
@@ -130,31 +82,25 @@ Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const E
   return header;
 }
 
-/// Calls `write(first, rows)` for strips of rows, counted from the top of the data window, once `others` holds theirs.
+/// Calls `write(first, rows)` for strips of rows, counted from the top of the window, once `others` holds theirs.
 template <class Write>
-void over_strips(Imf::MultiPartInputFile& input, int part, OtherChannels& others, const Write& write) {
+void over_strips(Imf::MultiPartInputFile& input, int part, const Imath::Box2i& window, ExrKeptChannels& others,
+                 const Write& write) {
   Imf::InputPart source(input, part);
-  const Imath::Box2i window = source.header().dataWindow();
   const int height = window.max.y - window.min.y + 1;
   for (int row = 0; row < height; row += ExrColorRows::kRows) {
-    const int rows = std::min(ExrColorRows::kRows, height - row), y = window.min.y + row;
-    if (!others.empty()) {
-      Imf::FrameBuffer buffer;
-      others.add_slices(window, y, rows, buffer);
-      source.setFrameBuffer(buffer);
-      source.readPixels(y, y + rows - 1);
-    }
+    const int rows = std::min(ExrColorRows::kRows, height - row);
+    others.read(source, window.min.y + row, rows);
     write(row, rows);
   }
 }
 
 void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part, ExrColorRows& color,
-                      OtherChannels& others) {
+                      ExrKeptChannels& others) {
   Imf::OutputPart target(output, part);
-  const Imath::Box2i window = target.header().dataWindow();
-  over_strips(input, part, others, [&](int row, int rows) {
+  over_strips(input, part, target.header().dataWindow(), others, [&](int row, int rows) {
     Imf::FrameBuffer buffer;
-    if (!others.empty()) others.add_slices(window, window.min.y + row, rows, buffer);
+    others.add_slices(buffer);
     color.add_slices(row, rows, buffer);
     target.setFrameBuffer(buffer);
     target.writePixels(rows);
@@ -163,10 +109,10 @@ void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& 
 
 /// The only part of a file, where it has zipped lines.
 void write_only_part(Imf::MultiPartInputFile& input, OutputFile& out, const Imf::Header& header, ExrColorRows& color,
-                     OtherChannels& others) {
+                     ExrKeptChannels& others) {
   color.find_places(header);
   ExrLineWriter file(header, out);
-  over_strips(input, 0, others, [&](int first, int rows) {
+  over_strips(input, 0, header.dataWindow(), others, [&](int first, int rows) {
     file.write(rows, [&](int y, std::uint8_t* line) {
       color.put_row(y, line);
       others.put_row(header, y - first, line);
@@ -210,12 +156,14 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
   AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));
   const Replacement replacement = replacement_for(*facts, picture);
   ExrColorRows color(picture, replacement.names, sample_type(*format, options, facts));
-  OtherChannels others(input.header(facts->part), replacement.replaced);
+  const Imath::Box2i window = exr_window(picture.data_window);
+  ExrKeptChannels others(input.header(facts->part), replacement.replaced, window);
   AFTERGLOW_CHECK(others.check());
 
   std::vector<Imf::Header> headers;
   for (int part = 0; part < input.parts(); ++part) headers.push_back(input.header(part));
-  headers[static_cast<std::size_t>(facts->part)] = color_header(input.header(facts->part), *facts, color, others);
+  headers[static_cast<std::size_t>(facts->part)] =
+      color_header(input.header(facts->part), *facts, window, color, others);
   AFTERGLOW_CHECK(set_compression(headers[static_cast<std::size_t>(facts->part)], options.compression));
   if (headers.size() == 1 && can_pack_lines(headers[0])) {
     write_only_part(input, out, headers[0], color, others);
