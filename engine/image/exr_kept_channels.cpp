@@ -28,6 +28,19 @@ std::array<std::uint8_t, 4> bytes_of(Imf::PixelType type, float value) {
   return bytes;
 }
 
+std::string_view last_of(const std::string& name) {
+  return std::string_view(name).substr(name.rfind('.') + 1);  // npos + 1 is 0
+}
+
+/// As OpenEXR packs: PXR24 cuts floats to 24 bits, B44 is for half floats, DWA goes by the end of the name.
+bool changes(std::string_view compression, const std::string& name, Imf::PixelType type) {
+  constexpr std::array<std::string_view, 6> kByCosines{"R", "G", "B", "Y", "RY", "BY"};
+  if (compression == "pxr24") return type == Imf::FLOAT;
+  if (compression.starts_with("b44")) return type == Imf::HALF;
+  return compression.starts_with("dwa") && type != Imf::UINT &&
+         std::ranges::find(kByCosines, last_of(name)) != kByCosines.end();
+}
+
 }  // namespace
 
 ExrKeptChannels::ExrKeptChannels(const Imf::Header& header, const std::vector<std::string>& replaced,
@@ -51,6 +64,17 @@ Result<void> ExrKeptChannels::check() const {
   if (!window_.intersects(own_.min) || !window_.intersects(own_.max))
     return Error{ErrorKind::io, "cannot keep layers: they reach beyond the picture"};
   return {};
+}
+
+std::vector<std::string> ExrKeptChannels::changed_by(std::string_view compression) const {
+  std::vector<std::string> names;
+  for (const Kept& kept : channels_) {
+    if (!changes(compression, kept.name, kept.channel.type)) continue;
+    const std::size_t dot = kept.name.rfind('.');
+    const std::string layer = kept.name.substr(0, dot);  // all of it without a dot
+    if (std::ranges::find(names, layer) == names.end()) names.push_back(layer);
+  }
+  return names;
 }
 
 void ExrKeptChannels::add_channels(Imf::Header& header) const {

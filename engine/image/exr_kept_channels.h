@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
@@ -27,6 +28,9 @@ class ExrKeptChannels {
   /// Errors: io (channels at less than full resolution are not copied; the window does not hold the part's own).
   Result<void> check() const;
   bool empty() const { return channels_.empty(); }
+  /// Names of the layers, those of channels without one, which this compression would change. `compression`: by its
+  /// name, without a level.
+  std::vector<std::string> changed_by(std::string_view compression) const;
 
   void add_channels(Imf::Header& header) const;
   /// Holds `rows` rows from row `y` on, in the file's coordinates.

@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text.h"
 #include "image/exr_kept_channels.h"
 #include "image/exr_line_writer.h"
 #include "image/exr_rows.h"
@@ -30,6 +31,8 @@
 
 namespace afterglow {
 namespace {
+
+constexpr const char* kLossless = "zip";
 
 /// What the colour's layer looks like in the new file.
 struct Replacement {
@@ -121,6 +124,17 @@ void write_only_part(Imf::MultiPartInputFile& input, OutputFile& out, const Imf:
   file.finish();
 }
 
+/// Compression of the colour's part: what was asked for, unless other channels that lie in it would lose by it.
+Result<std::string> compression_beside(const ExrKeptChannels& others, const std::string& wanted,
+                                       Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const Compression compression, parse_compression(wanted.empty() ? kLossless : wanted));
+  const std::vector<std::string> changed = others.changed_by(compression.name);
+  if (changed.empty()) return wanted;
+  diagnostics.warn(fmt::format("--compression {} would change layers that are kept ({}); {} is taken", compression.name,
+                               join(changed), kLossless));
+  return std::string(kLossless);
+}
+
 /// Copies a part's compressed chunks as they are.
 void copy_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part) {
   const std::string type = output.header(part).type();
@@ -164,7 +178,8 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
   for (int part = 0; part < input.parts(); ++part) headers.push_back(input.header(part));
   headers[static_cast<std::size_t>(facts->part)] =
       color_header(input.header(facts->part), *facts, window, color, others);
-  AFTERGLOW_CHECK(set_compression(headers[static_cast<std::size_t>(facts->part)], options.compression));
+  AFTERGLOW_TRY(const std::string compression, compression_beside(others, options.compression, diagnostics));
+  AFTERGLOW_CHECK(set_compression(headers[static_cast<std::size_t>(facts->part)], compression));
   if (headers.size() == 1 && can_pack_lines(headers[0])) {
     write_only_part(input, out, headers[0], color, others);
   } else {

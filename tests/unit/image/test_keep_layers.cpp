@@ -118,6 +118,88 @@ TEST_F(KeepLayers, ChosenLayerIsTheOneReplaced) {
                     3e-4);
 }
 
+/// What each method loses, and of what: OpenEXR packs colours, whole floats or half floats with loss.
+struct Method {
+  const char* name;
+  std::vector<std::string> harmless, changed;  ///< layers
+};
+
+class KeepCompressed : public KeepLayers, public testing::WithParamInterface<Method> {
+ protected:
+  static inline const std::vector<std::string> kNames{
+      "R", "G", "B", "A", "Z", "Ids00.R", "Ids00.G", "Ids00.B", "Ids00.A", "Matte.R", "Names.id", "Names.part"};
+  static OIIO::ImageSpec spec_of(const std::vector<std::string>& layers) {
+    OIIO::ImageSpec spec = make_spec(40, 70, {"R", "G", "B", "A"}, OIIO::TypeHalf);
+    for (const std::string& name : kNames)
+      if (std::ranges::find(layers, name.substr(0, name.find('.'))) != layers.end()) spec.channelnames.push_back(name);
+    spec.nchannels = static_cast<int>(spec.channelnames.size());
+    for (const std::string& name : spec.channelnames) {
+      const bool half = name.size() == 1 && name != "Z", whole = name == "Names.part";
+      spec.channelformats.push_back(half || name.starts_with("Matte") ? OIIO::TypeHalf
+                                    : whole                           ? OIIO::TypeUInt32
+                                                                      : OIIO::TypeFloat);
+    }
+    spec.format = OIIO::TypeFloat;
+    return spec;
+  }
+  /// Bits that any loss shows in.
+  static std::vector<float> ids(int channels) {
+    std::vector<float> samples = marks(40, 70, channels);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (i % static_cast<std::size_t>(channels) > 3) samples[i] += 1e-7F;
+    return samples;
+  }
+  /// Writes a file with these layers. The compression that was taken.
+  std::string kept(const std::vector<std::string>& layers) {
+    const OIIO::ImageSpec spec = spec_of(layers);
+    make_file(folder_ / "in.exr", {spec}, {ids(spec.nchannels)});
+    options_.compression = GetParam().name;
+    process(folder_ / "in.exr", folder_ / "o.exr");
+    const auto before = parts_of(folder_ / "in.exr"), after = parts_of(folder_ / "o.exr");
+    EXPECT_EQ(after[0].spec.channelnames, before[0].spec.channelnames);
+    for (std::size_t i = 0; i < before[0].samples.size(); ++i)
+      if (i % static_cast<std::size_t>(spec.nchannels) > 3 && before[0].samples[i] != after[0].samples[i]) {
+        ADD_FAILURE() << spec.channelnames[i % static_cast<std::size_t>(spec.nchannels)] << " has changed";
+        break;
+      }
+    return after[0].spec.get_string_attribute("compression");
+  }
+};
+
+TEST_P(KeepCompressed, LayersLoseNothing) {
+  EXPECT_TRUE(kept({}).starts_with(GetParam().name));
+  EXPECT_TRUE(kept(GetParam().harmless).starts_with(GetParam().name));
+  EXPECT_THAT(messages_.warnings, testing::IsEmpty());
+  for (const std::string& layer : GetParam().changed) {
+    EXPECT_EQ(kept({layer}), "zip");
+    EXPECT_THAT(messages_.warnings.back(),
+                HasSubstr("--compression " + std::string(GetParam().name) + " would change layers that are kept (" +
+                          layer + "); zip is taken"));
+  }
+}
+
+TEST_P(KeepCompressed, TheColourHasItInAPartOfItsOwn) {
+  auto beauty = make_spec(40, 70, {"R", "G", "B", "A"}, OIIO::TypeHalf),
+       names = make_spec(40, 70, {"Ids00.R", "Ids00.G", "Ids00.B", "Ids00.A"}, OIIO::TypeFloat);
+  beauty.attribute("oiio:subimagename", "rgba");
+  names.attribute("oiio:subimagename", "ids");
+  make_file(folder_ / "in.exr", {beauty, names}, {marks(40, 70, 4), ids(4)});
+  options_.compression = GetParam().name;
+  process(folder_ / "in.exr", folder_ / "o.exr");
+  const auto before = parts_of(folder_ / "in.exr"), after = parts_of(folder_ / "o.exr");
+  EXPECT_EQ(after[0].spec.get_string_attribute("compression").substr(0, 4), std::string(GetParam().name).substr(0, 4));
+  EXPECT_EQ(after[1].bytes, before[1].bytes);
+  EXPECT_THAT(messages_.warnings, testing::IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, KeepCompressed,
+                         testing::Values(Method{"pxr24", {"Matte"}, {"Z", "Ids00", "Names"}},
+                                         Method{"b44", {"Z", "Ids00", "Names"}, {"Matte"}},
+                                         Method{"b44a", {"Z", "Ids00", "Names"}, {"Matte"}},
+                                         Method{"dwaa", {"Z", "Names"}, {"Ids00", "Matte"}},
+                                         Method{"dwab", {"Z", "Names"}, {"Ids00", "Matte"}}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
 TEST_F(KeepLayers, TiledMipFileBecomesScanLines) {
   ASSERT_NO_FATAL_FAILURE(process(test_image("openexr/MultiResolution_ColorCodedLevels.exr"), folder_ / "o.exr"));
   EXPECT_EQ(parts_of(folder_ / "o.exr")[0].spec.tile_width, 0);
