@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <string_view>
 
 #include "core/exception.h"
+#include "core/text.h"
 #include "image/lut_file.h"
 #include "image/lut_taker.h"
 #include "image/ocio_chain.h"
@@ -18,18 +20,45 @@
 namespace afterglow {
 namespace {
 
-/// OpenColorIO's message in one line, with the line of the file where it names one.
-Error error_of(const std::string& file, std::string message) {
+/// Its end counts: what is wrong stands behind what was tried.
+std::string shortened(const std::string& message) {
+  constexpr std::size_t kMost = 300;
+  std::string out;
+  for (const char c : message) {
+    const bool blank = static_cast<unsigned char>(c) <= 0x20;
+    if (!blank || (!out.empty() && out.back() != ' ')) out += blank ? ' ' : c;
+  }
+  if (out.size() > kMost) {
+    std::size_t begin = out.size() - kMost;
+    while (begin < out.size() && (static_cast<unsigned char>(out[begin]) & 0xc0) == 0x80) ++begin;
+    out = "…" + out.substr(begin);
+  }
+  return trim(out);
+}
+
+/// OpenColorIO's reason in one line, at the file that it is about, with the line where it names one.
+Error error_of(std::string file, std::string message) {
+  constexpr std::string_view kTable = "The specified transform file '", kTableEnd = "' could not be loaded.",
+                             kProfile = "Loading the OCIO profile '", kProfileEnd = "' failed. ";
+  const auto cut = [&](std::string_view opening, std::string_view end) {  // what stands between them
+    const std::size_t at = message.find(opening), begin = at + opening.size(), behind = message.find(end, at);
+    if (at == std::string::npos || behind == std::string::npos || behind < begin) return std::string();
+    std::string name = message.substr(begin, behind - begin);
+    message.erase(0, behind + end.size());
+    return name;
+  };
+  if (const std::string table = cut(kTable, kTableEnd); !table.empty()) file = table;
+  cut(kProfile, kProfileEnd);
+  if (const auto tried = message.find(" gave the error"); tried != std::string::npos)
+    if (const auto colon = message.find(':', tried); colon != std::string::npos) message.erase(0, colon + 1);
+  const std::string name = std::filesystem::path(file).filename().string();
+  for (std::size_t at = message.find(file); at != std::string::npos; at = message.find(file, at + name.size()))
+    message.replace(at, file.size(), name);
   int line = 0;
   if (const auto at = message.find("line"); at != std::string::npos)
     if (const auto digit = message.find_first_of("0123456789", at); digit != std::string::npos && digit < at + 8)
       line = std::atoi(message.c_str() + digit);
-  if (const auto opening = message.find("Loading the OCIO profile '"); opening != std::string::npos)
-    if (const auto end = message.find("' failed. ", opening); end != std::string::npos) message.erase(0, end + 10);
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  if (message.size() > 300) message.resize(300);
-  return {ErrorKind::script, "OpenColorIO cannot read it: " + message, file, line};
+  return {ErrorKind::script, "OpenColorIO cannot read it: " + shortened(message), file, line};
 }
 
 std::mutex mutex;  // OpenColorIO's cache of files is one for all

@@ -96,6 +96,32 @@ TEST(Cube, EveryFormatRefusesRubbish) {
   EXPECT_THAT(read_lut(folder / "none.cube").error().text(), HasSubstr("none.cube: error: "));
 }
 
+TEST(Cube, OpenColorIosReasonIsWhole) {
+  const TemporaryFolder folder;
+  const auto deep = folder / (std::string(120, 'a') + "/" + std::string(120, 'b') + "/line 7");
+  std::filesystem::create_directories(deep);
+  const auto told = [&](const char* name, const char* text) {
+    std::ofstream(deep / name) << text;
+    const auto read = read_lut(deep / name);
+    return read ? Error{ErrorKind::other, ""} : read.error();
+  };
+  const Error cdl = told("a.cc", "<ColorCorrection id=\"x\"><SOPNode><Slope>1 1</Slope></SOPNode></ColorCorrection>");
+  EXPECT_THAT(cdl.message, HasSubstr("SOPNode: 3 values required"));
+  EXPECT_EQ(cdl.line, 1);
+  const Error list =
+      told("a.clf",
+           "<?xml version=\"1.0\"?>\n<ProcessList id=\"p\" compCLFversion=\"3\">\n<LUT1D inBitDepth=\"32f\" "
+           "outBitDepth=\"32f\"><Array dim=\"5 3\">1 2 3</Array></LUT1D></ProcessList>");
+  EXPECT_THAT(list.message, HasSubstr("Expected 5x3 Array values, found 3"));
+  const Error shaper = told("a.csp", "rubbish");
+  EXPECT_THAT(shaper.message, HasSubstr("First line: 'rubbish'"));
+  for (const Error& error : {cdl, list, shaper}) {
+    EXPECT_TRUE(error.message.starts_with("OpenColorIO cannot read it: ")) << error.message;
+    EXPECT_THAT(error.message, testing::Not(HasSubstr("aaaa")));
+    EXPECT_THAT(error.message, testing::Not(HasSubstr("\n")));
+  }
+}
+
 Lut ending_with(LutKind kind, float value) {
   Lut lut{{{LutKind::range, 0, 0}, {kind, 1, 1}}, {1, 3}, std::vector<float>(12, 0.0f)};
   lut.table[2] = 7;  // the range's; the last step begins a row further
