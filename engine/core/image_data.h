@@ -16,6 +16,7 @@ struct ImageData {
   std::vector<float> pixels;   ///< RGBA, row by row
   Hash hash;                   ///< of size and pixels: equal hashes mean equal images
   std::filesystem::path file;  ///< where it came from
+  bool opaque = false;         ///< a picture without alpha: its A is 1
 };
 
 }  // namespace afterglow

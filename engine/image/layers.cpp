@@ -381,9 +381,14 @@ std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, cons
                             {"x", "y", "z", "w"},
                             {"u", "v"}}) {
     std::vector<int> channels;
-    for (const char* suffix : usual)
-      if (const int channel = layer.find({suffix}); channel >= 0) channels.push_back(channel);
-    if (!channels.empty()) return ChannelChoice{layer.part, std::move(channels)};
+    for (const char* suffix : usual) channels.push_back(layer.find({suffix}));
+    const auto there = std::ranges::count_if(channels, [](int channel) { return channel >= 0; });
+    if (there == 0) continue;
+    // A single one is in the first place, alpha in its own, too.
+    const bool alpha = channels.size() == 4 && channels[3] >= 0;
+    if (there == 1) return ChannelChoice{layer.part, std::vector<int>(alpha ? 4 : 1, std::ranges::max(channels))};
+    while (channels.back() < 0) channels.pop_back();
+    return ChannelChoice{layer.part, std::move(channels)};
   }
   std::vector<int> channels = layer.channels;
   channels.resize(std::min<std::size_t>(channels.size(), 4));

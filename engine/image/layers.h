@@ -37,8 +37,8 @@ struct ChannelChoice {
 /// nearest).
 Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::string& name);
 
-/// Where `find_color` without a name had to take one of several layers that look alike: their names, the one that it took
-/// first. Empty where the choice is plain.
+/// Where `find_color` without a name had to take one of several layers that look alike: their names, the one that it
+/// took first. Empty where the choice is plain.
 std::vector<std::string> equal_colors(const std::vector<FilePart>& parts);
 
 /// The depth channel: by `name` (channel or layer), else by the usual names, those beside the colour layer first

@@ -62,6 +62,16 @@ void add_targets(const std::vector<int>& channels, Image& image, std::vector<Rea
   }
 }
 
+/// What add_targets left out: channels that occur twice.
+void fill_twice(const std::vector<int>& channels, Image& image) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const auto first = static_cast<std::size_t>(std::ranges::find(channels, channels[i]) - channels.begin());
+    if (channels[i] < 0 || first == i) continue;
+    const auto count = static_cast<std::size_t>(image.channels);
+    for (std::size_t at = 0; at < image.pixels.size(); at += count) image.pixels[at + i] = image.pixels[at + first];
+  }
+}
+
 /// `image`, which covers `window`, cut or padded to cover `wanted`, with `background` by channel.
 Image placed(Image image, const Rect& window, const Rect& wanted, const std::array<float, 4>& background) {
   if (window == wanted) return image;
@@ -265,6 +275,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   for (std::size_t i = 0; i < auxiliary.size(); ++i) {
     const AuxiliaryPlan& extra = plan.auxiliary[i];
     const FilePart& from = plan.part_of(extra);
+    fill_twice(extra.choice.channels, auxiliary[i]);
     Image image = upright(std::move(auxiliary[i]), from.orientation);
     const Rect window = upright_auxiliary(plan, extra);
     const NonFinite in_layer = find_non_finite(image);

@@ -57,6 +57,14 @@ std::vector<float> rgba(const Image& image) {
   return out;
 }
 
+/// Whether a file's only channel is its alpha: a matte.
+bool is_alpha_alone(const Picture& picture) {
+  if (picture.has_alpha || !picture.facts) return false;
+  const std::string& name = picture.facts->color_channels[0];
+  const std::string last = lower(name.substr(name.rfind('.') + 1));  // npos + 1 is 0
+  return last == "a" || last == "alpha";
+}
+
 /// What `make` gives for a file, now or before, of this look or of the two before it.
 template <class T, class Make>
 std::shared_ptr<const T> stored(Runtime& runtime, const char* kind, const fs::path& file, const std::string& how,
@@ -93,8 +101,8 @@ bool is_given_by_command(const Runtime& runtime, const std::string& name) {
   return setting && setting->second.type == SettingType::file && setting->second.number[0] == 1;
 }
 
-std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const fs::path& file) {
-  ImageData data{size, std::move(pixels), {}, file};
+std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const fs::path& file, bool opaque) {
+  ImageData data{size, std::move(pixels), {}, file, opaque};
   const Hash of_pixels = hash_bytes(data.pixels.data(), data.pixels.size() * sizeof(float));
   data.hash = Hasher()
                   .add(static_cast<std::uint64_t>(size.width))
@@ -185,7 +193,10 @@ std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& fi
       error.kind = ErrorKind::script;  // it is a part of the look
       throw ScriptError{std::move(error)};
     }
-    return make_data(picture->color.size(), rgba(picture->color), file);
+    std::vector<float> pixels = rgba(picture->color);
+    const bool matte = is_alpha_alone(*picture);
+    for (std::size_t i = 0; matte && i < pixels.size(); i += 4) pixels[i + 3] = pixels[i];
+    return make_data(picture->color.size(), std::move(pixels), file, !picture->has_alpha && !matte);
   });
   count_data(runtime, loaded.get());
   return known = std::move(loaded);

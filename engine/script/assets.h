@@ -72,7 +72,8 @@ struct AssetFault {
 bool may_read(const Runtime& runtime, const std::filesystem::path& file);
 /// Did the command line give this as a file for a setting of the entry being built? Then it may be any file.
 bool is_given_by_command(const Runtime& runtime, const std::string& name);
-std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const std::filesystem::path& file);
+std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const std::filesystem::path& file,
+                                           bool opaque = false);
 /// Counts data that the state holds; null is nothing. Errors: throws ScriptError, when all of it takes too much memory.
 void count_data(Runtime& runtime, const ImageData* data);
 /// What the file held when this look, or whoever it shares a record with, read it first. None: it cannot be read.

@@ -249,9 +249,15 @@ int graph_ocio(lua_State* lua) {
 int graph_image(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:image { file = … }");
   TableReader table(lua, 2, fmt::format("effect '{}': g:image", graph.entry().effect));
-  table.allow({"file"}, false);
+  table.allow({"alpha", "file"}, false);
+  const bool alpha = table.boolean("alpha").value_or(false);
   const auto file = read_file_key(lua, table, "image");
-  push_image(lua, graph.data(file.filename().string(), load_picture(lua, file)));
+  auto picture = load_picture(lua, file);
+  if (alpha && picture->opaque)
+    Runtime::of(lua).box->diagnostics->warn_once(
+        "no alpha " + file.string(),
+        fmt::format("effect '{}': {} has no alpha; it counts as 1 everywhere", graph.entry().name, file.string()));
+  push_image(lua, graph.data(file.filename().string(), std::move(picture)));
   return 1;
 }
 

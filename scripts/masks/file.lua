@@ -13,6 +13,6 @@ return fx.effect {
   },
   active = function(s) return s.file ~= "", "no file is named" end,
   build = function(g, s, source)
-    return g:pass { shader = "mask/file", size = source, picture = g:image { file = s.file }, channel = channels[s.channel] }
+    return g:pass { shader = "mask/file", size = source, picture = g:image { file = s.file, alpha = s.channel == "a" }, channel = channels[s.channel] }
   end,
 }
