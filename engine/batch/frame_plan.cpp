@@ -93,6 +93,7 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
     if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
   context.layers = header.layers;
   context.metadata = {header.facts, &header.facts->metadata};
+  context.picture = header.facts->file;
   context.frame = job.frame;
   context.fps = job.fps > 0 ? job.fps : options_.fps;
   context.time = job.time.value_or(job.frame / options_.fps);

@@ -76,6 +76,8 @@ std::optional<std::map<std::string, std::uint32_t>> read_unescaped(std::string_v
   }
 }
 
+}  // namespace
+
 Result<std::map<std::string, std::uint32_t>> read_manifest(const std::string& text, const std::string& layer) {
   const auto wrong = [&](const std::string& what) {
     return Error{ErrorKind::io, fmt::format("the manifest of the cryptomatte '{}' {}", layer, what)};
@@ -92,8 +94,6 @@ Result<std::map<std::string, std::uint32_t>> read_manifest(const std::string& te
   }
   return out;
 }
-
-}  // namespace
 
 std::uint32_t cryptomatte_id(std::string_view name) {
   const std::uint32_t hash = murmur3(name), exponent = hash >> 23 & 255;
@@ -124,9 +124,11 @@ std::vector<std::string> cryptomatte_names(std::string_view text) {
 Result<std::optional<Cryptomatte>> find_cryptomatte(const Metadata& metadata, const std::string& layer) {
   for (const auto& [key, name] : all_of(metadata)) {
     if (name != layer && !name.ends_with("." + layer)) continue;
-    Cryptomatte out{name, {}};
+    Cryptomatte out{name, {}, {}};
     if (const std::string* manifest = text_of(metadata, key + "/manifest")) {
       AFTERGLOW_TRY(out.manifest, read_manifest(*manifest, name));
+    } else if (const std::string* file = text_of(metadata, key + "/manif_file")) {
+      out.manifest_file = *file;
     }
     return std::optional(std::move(out));
   }

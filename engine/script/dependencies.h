@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/hash.h"
+#include "image/cryptomatte.h"
 
 namespace afterglow {
 
@@ -19,11 +21,14 @@ struct Dependencies {
   std::map<std::string, std::string> environment;
   /// Shaders that were made and their tables, by the request: "config.ocio, from lin, display sRGB".
   std::map<std::string, Hash> generated;
+  /// Of masks, which select nothing where the picture has no such ids.
+  std::vector<CryptomatteObject> objects;
 
   void add(const Dependencies& more) {
     for (const auto& [file, name] : more.files) files.emplace(file, name);
     for (const auto& [name, value] : more.environment) environment.emplace(name, value);
     for (const auto& [name, hash] : more.generated) generated.emplace(name, hash);
+    objects.insert(objects.end(), more.objects.begin(), more.objects.end());
   }
 };
 

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <map>
 
+#include "core/file.h"
+#include "core/inside.h"
+#include "core/pack.h"
 #include "core/text.h"
 #include "image/cryptomatte.h"
 #include "script/filter_reader.h"
@@ -261,8 +264,32 @@ int graph_image(lua_State* lua) {
   return 1;
 }
 
+// The manifest of a cryptomatte in a file beside the picture; what cannot be read is warned about.
+std::map<std::string, std::uint32_t> manifest_beside(lua_State* lua, const std::filesystem::path& picture,
+                                                     const Cryptomatte& cryptomatte) {
+  constexpr std::size_t kMost = 64u << 20;  // bytes
+  if (cryptomatte.manifest_file.empty() || picture.empty()) return {};
+  const auto warn = [&](const std::string& why) {
+    Runtime::of(lua).box->diagnostics->warn_once(
+        "manifest " + cryptomatte.layer,
+        fmt::format("{}: the manifest '{}' of the cryptomatte '{}' {}; ids are made of "
+                    "the names themselves",
+                    picture.string(), tidy_message(cryptomatte.manifest_file, 100), cryptomatte.layer, why));
+    return std::map<std::string, std::uint32_t>();
+  };
+  const std::filesystem::path folder = picture.has_parent_path() ? picture.parent_path() : ".";
+  const std::filesystem::path file = folder / cryptomatte.manifest_file;
+  if (!is_safe_entry(cryptomatte.manifest_file, 8) || !lies_in(file, folder)) return warn("lies outside of its folder");
+  if (!is_file(file)) return warn("is not there");
+  const auto text = read_file(file, kMost);
+  if (!text) return warn("cannot be read");
+  auto manifest = read_manifest(*text, cryptomatte.layer);
+  if (!manifest) throw failure(manifest.error().message);
+  return std::move(*manifest);
+}
+
 // The ids of the objects that a cryptomatte's names stand for, as floats. Names that the picture's manifest lacks are
-// warned about: they cover nothing.
+// warned about: they cover nothing. So are those that a picture without one has not, once its pixels are there.
 int graph_cryptomatte(lua_State* lua) {
   constexpr std::size_t kMost = 8;
   GraphBuilder& graph = graph_of(lua, "g:cryptomatte { layer = …, names = … }");
@@ -275,7 +302,11 @@ int graph_cryptomatte(lua_State* lua) {
   if (metadata) {
     auto found = find_cryptomatte(*metadata, layer);
     if (!found) throw failure(found.error().message);
-    if (*found) manifest = std::move((*found)->manifest);
+    if (*found) {
+      const Sandbox::Pause pause(*Runtime::of(lua).box);
+      manifest = (*found)->manifest.empty() ? manifest_beside(lua, graph.context().picture, **found)
+                                            : std::move((*found)->manifest);
+    }
   }
   std::vector<std::string> known;
   for (const auto& [name, id] : manifest) known.push_back(name);
@@ -295,6 +326,7 @@ int graph_cryptomatte(lua_State* lua) {
       continue;
     }
     const std::uint32_t id = given == manifest.end() ? cryptomatte_id(name) : given->second;
+    if (given == manifest.end()) Runtime::of(lua).depends.objects.push_back({layer, name, id});
     lua_pushnumber(lua, std::bit_cast<float>(id));
     lua_rawseti(lua, -2, ++count);
   }

@@ -133,6 +133,7 @@ struct BuildContext {
   double length_scale = 1;
   std::vector<std::string> layers = {};           ///< names of all layers that it has, for messages
   std::shared_ptr<const Metadata> metadata = {};  ///< of its file; null: unknown
+  std::filesystem::path picture = {};             ///< its file; empty: unknown
   friend bool operator==(const BuildContext&, const BuildContext&) = default;
 };
 

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 #include "core/half.h"
+#include "core/printable.h"
 #include "image/metadata.h"
 
 namespace afterglow {
@@ -26,12 +29,30 @@ std::map<std::string, HostImage> picture_inputs(const Picture& picture, const Gr
   return inputs;
 }
 
+void warn_if_absent(const CryptomatteObject& object, const Picture& picture, Diagnostics& diagnostics) {
+  bool looked = false;
+  for (const char* ranks : {"00", "01", "02"}) {
+    const auto found = picture.auxiliary.find("layer:" + object.layer + ranks);
+    if (found == picture.auxiliary.end() || found->second.channels != 4) continue;
+    looked = true;
+    const std::vector<float>& pixels = found->second.pixels;  // two ranks of (id, coverage)
+    for (std::size_t i = 0; i < pixels.size(); i += 2)
+      if (std::bit_cast<std::uint32_t>(pixels[i]) == object.id) return;
+  }
+  if (looked)
+    diagnostics.warn_once("cryptomatte " + object.layer + " " + object.name,
+                          fmt::format("the cryptomatte '{}' has no manifest, and no pixel has the id of the name '{}': "
+                                      "it selects nothing",
+                                      object.layer, tidy_message(object.name, 100)));
+}
+
 BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
   context.layers = picture.layers;
   if (picture.facts) context.metadata = {picture.facts, &picture.facts->metadata};
+  if (picture.facts) context.picture = picture.facts->file;
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
   return context;
 }

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnostics.h"
 #include "exec/frame.h"
 #include "graph/graph.h"
+#include "image/cryptomatte.h"
 #include "image/picture.h"
 #include "script/preset.h"
 
@@ -15,6 +17,9 @@ namespace afterglow {
 
 /// "source" and the auxiliary inputs of the graph; they point into the picture.
 std::map<std::string, HostImage> picture_inputs(const Picture& picture, const Graph& graph);
+
+/// Warns of an object whose id no pixel of the picture's cryptomattes has: its mask selects nothing.
+void warn_if_absent(const CryptomatteObject& object, const Picture& picture, Diagnostics& diagnostics);
 
 /// `frame` with the sizes of the picture.
 BuildContext context_of(const Picture& picture, const BuildContext& frame);

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <future>
+#include <set>
 
 #include "core/stopwatch.h"
 #include "exec/cpu/warm_up.h"
@@ -63,7 +64,9 @@ struct Session::State {
   HostResult result;
   bool flagged = false;  ///< the last frame's result
   SessionTimes times;
-  std::future<void> warming_up;  ///< first to go: it is waited for
+  Diagnostics* diagnostics = nullptr;
+  std::set<std::string> looked_for;  ///< objects of cryptomattes that the first pictures were asked for
+  std::future<void> warming_up;      ///< first to go: it is waited for
 
   Result<void> use(OpenedDevice opened);
   void warm_up(const Program& program);
@@ -88,6 +91,7 @@ Result<std::unique_ptr<Session>> Session::begin(const std::filesystem::path& pre
   auto state = std::make_unique<State>();
   state->options = options;
   state->preset_file = preset.string();
+  state->diagnostics = &diagnostics;
   state->opening = std::async(
       std::launch::async, [device = options.device, &diagnostics] { return State::open_device(device, diagnostics); });
   AFTERGLOW_TRY(state->stack, Stack::load(preset, options.stack, diagnostics));
@@ -170,6 +174,8 @@ Result<void> Session::submit(Picture picture, FrameRequest request) {
 /// Takes the picture; on errors it stays.
 Result<void> Session::State::submit(Picture& picture, FrameRequest request) {
   Frame frame{.picture = {}, .encoding = request.encoding, .region = request.region, .skipped = {}};
+  for (const CryptomatteObject& object : request.build->depends.objects)
+    if (looked_for.insert(object.layer + "/" + object.name).second) warn_if_absent(object, picture, *diagnostics);
   AFTERGLOW_TRY(RenderRequest render, stack->request(std::move(request)));
   frame.runs = render.work.runs();
   if (frame.runs) {

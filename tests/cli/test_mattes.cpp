@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Mattes that come as channels and files: which channel is taken, and what is told where it is not there.
+// Mattes that come as channels, files and ids: which channel is taken, and what is told where it is not there.
 #include <OpenImageIO/imageio.h>
 
+#include <bit>
+#include <cstdio>
 #include <functional>
 
 #include "cli_test.h"
+#include "image/cryptomatte.h"
 
 namespace afterglow::test {
 namespace {
@@ -74,6 +77,71 @@ TEST_F(Mattes, ALonelyAlphaIsAlpha) {
   EXPECT_THAT(run_mask("fx.mask.file { file = \"plain.exr\", channel = \"a\" }").err,
               HasSubstr("plain.exr has no alpha; it counts as 1 everywhere"));
   EXPECT_THAT(run_mask("fx.mask.file { file = \"plain.exr\" }").err, Not(HasSubstr("warning")));
+}
+
+class CryptomatteManifests : public Mattes {
+ protected:
+  /// An object called Lamp covers its part of each pixel.
+  void make_picture(const std::string& name, const Attributes& more = {}) const {
+    Attributes attributes{{"cryptomatte/abc1234/name", "CryptoObject"},
+                          {"cryptomatte/abc1234/hash", "MurmurHash3_32"},
+                          {"cryptomatte/abc1234/conversion", "uint32_to_float32"}};
+    attributes.insert(attributes.end(), more.begin(), more.end());
+    make(
+        name, {"R", "G", "B", "CryptoObject00.R", "CryptoObject00.G", "CryptoObject00.B", "CryptoObject00.A"},
+        [](const std::string& channel, int x) {
+          if (channel.size() == 1) return kLight;
+          if (channel.ends_with("R")) return std::bit_cast<float>(cryptomatte_id("Lamp"));
+          return channel.ends_with("G") ? matte(x) : 0.0F;
+        },
+        attributes);
+  }
+  std::string err(const std::string& name, const std::string& picture = "a.exr") const {
+    return run_mask("fx.mask.cryptomatte { names = \"" + name + "\" }", picture).err;
+  }
+  static std::string manifest() {
+    char digits[9];
+    std::snprintf(digits, sizeof digits, "%08x", cryptomatte_id("Lamp"));
+    return std::string("{\"Lampe\":\"") + digits + "\"}";
+  }
+};
+
+TEST_F(CryptomatteManifests, MayLieBesideThePicture) {
+  write("shot/names/man.json", manifest());
+  write("man.json", manifest());
+  make_picture("shot/a.exr", {{"cryptomatte/abc1234/manif_file", "names/man.json"}});
+  EXPECT_THAT(err("Lampe", "shot/a.exr"), Not(HasSubstr("warning")));
+  expect_mask(matte, "a name of the manifest");
+  EXPECT_THAT(err("Lampp", "shot/a.exr"),
+              HasSubstr("the cryptomatte 'CryptoObject' has no 'Lampp'; did you mean 'Lampe'?"));
+  make_picture("shot/b.exr", {{"cryptomatte/abc1234/manif_file", "../man.json"}});
+  EXPECT_THAT(err("Lamp", "shot/b.exr"), HasSubstr("the manifest '../man.json' of the cryptomatte 'CryptoObject' lies "
+                                                   "outside of its folder; ids are made of the names themselves"));
+  expect_mask(matte, "by its hash");
+  make_picture("shot/c.exr", {{"cryptomatte/abc1234/manif_file", "gone.json"}});
+  EXPECT_THAT(err("Lamp", "shot/c.exr"),
+              HasSubstr("the manifest 'gone.json' of the cryptomatte 'CryptoObject' is not there"));
+  write("shot/names/man.json", "rubbish");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.cryptomatte "
+        "{ names = \"Lamp\" } } }\n");
+  EXPECT_THAT(run({"run", "look.lua", "shot/a.exr", "-o", "o.exr"}).err, HasSubstr("'CryptoObject' is no JSON object"));
+}
+
+TEST_F(CryptomatteManifests, WithoutOneANameThatNoPixelHasIsToldOnce) {
+  for (const char* name : {"a.0001.exr", "a.0002.exr"}) make_picture(name);
+  EXPECT_THAT(err("Lamp", "a.0001.exr"), Not(HasSubstr("warning")));
+  expect_mask(matte, "by its hash");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.cryptomatte "
+        "{ names = \"Lampp, Lamp\" } } }\n");
+  const Outcome outcome = run({"run", "look.lua", "a.####.exr", "-o", "o.####.exr"});
+  const std::string told =
+      "the cryptomatte 'CryptoObject' has no manifest, and no pixel has the id of the name 'Lampp': "
+      "it selects nothing";
+  const auto at = outcome.err.find(told);
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("cryptomatte", at + told.size()), std::string::npos) << outcome.err;
 }
 
 }  // namespace
