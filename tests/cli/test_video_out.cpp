@@ -103,6 +103,28 @@ TEST_F(VideoOut, UntoldColoursAreBt709) {
   EXPECT_EQ(hdr.at("color_space"), "bt2020nc");
 }
 
+TEST_F(VideoOut, LinearLightOfWidePrimariesIsTaggedAndRead) {
+  make_frames(1);
+  const struct {
+    const char *space, *primaries, *matrix;
+  } cases[] = {{"lin_rec2020", "bt2020", "bt2020nc"}, {"lin_p3d65", "smpte432", "bt709"}, {"linear", "bt709", "bt709"}};
+  ASSERT_EQ(run({"run", "look.lua", "in/1001.ppm", "-o", "light.exr", "--type", "float"}).exit_code, kDone);
+  for (const auto& [space, primaries, matrix] : cases) {
+    ASSERT_EQ(run({"run", "look.lua", "in/1001.ppm", "-o", "light.mkv", "--codec", "ffv1", "--pix-fmt", "yuv444p16",
+                   "--output-space", space})
+                  .exit_code,
+              kDone);
+    const auto stream = stream_of("light.mkv");
+    EXPECT_EQ(stream.at("color_transfer"), "linear") << space;
+    EXPECT_EQ(stream.at("color_primaries"), primaries) << space;
+    EXPECT_EQ(stream.at("color_space"), matrix) << space;
+    ASSERT_EQ(run({"run", "look.lua", "light.mkv", "-o", "back.####.exr", "--type", "float"}).exit_code, kDone);
+    const auto given = pixels_of("light.exr"), came = pixels_of("back.0001.exr");
+    ASSERT_EQ(given.size(), came.size());
+    for (std::size_t i = 0; i < given.size(); ++i) ASSERT_NEAR(given[i], came[i], 2e-3) << space << " " << i;
+  }
+}
+
 TEST_F(VideoOut, OptionsThatDoNotGoTogether) {
   make_frames(2);
   const auto before = files();
