@@ -97,6 +97,12 @@ class VideoSink : public FrameSink {
     plan.pack.space = video_space(options_, *plan.pack.layout, picture.view);
     times_.begin(job, plan);
     if (picture.facts) keep_facts(*picture.facts, plan, held);
+    constexpr int kPq = 16;
+    if (plan.transfer == kPq && job.movie && job.movie->facts().hdr_metadata)
+      diagnostics_.warn_once(
+          "hdr metadata", fmt::format("{}: what the input says of its display and its brightest light (HDR10) is not "
+                                      "kept: it was of other pictures",
+                                      file_.string()));
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
     opened_ = writer_.get();

@@ -3,6 +3,7 @@
 
 extern "C" {
 #include <libavutil/display.h>
+#include <libavutil/mastering_display_metadata.h>
 #include <libavutil/pixdesc.h>
 }
 
@@ -28,6 +29,23 @@ const std::int32_t* matrix_of(const AVFrame& frame, AVStream& stream) {
 #endif
   const AVFrameSideData* own = av_frame_get_side_data(&frame, AV_FRAME_DATA_DISPLAYMATRIX);
   return own && own->size >= kSize ? reinterpret_cast<const std::int32_t*>(own->data) : nullptr;
+}
+
+/// SMPTE ST 2086 and CTA-861.3, in the container or in the first frame.
+bool has_hdr_metadata(const AVFrame& frame, [[maybe_unused]] AVStream& stream) {
+#if LIBAVFORMAT_VERSION_MAJOR >= 61
+  const auto in_container = [&](AVPacketSideDataType type) {
+    return av_packet_side_data_get(stream.codecpar->coded_side_data, stream.codecpar->nb_coded_side_data, type) !=
+           nullptr;
+  };
+#else
+  const auto in_container = [&](AVPacketSideDataType type) {
+    return av_stream_get_side_data(&stream, type, nullptr) != nullptr;
+  };
+#endif
+  return in_container(AV_PKT_DATA_MASTERING_DISPLAY_METADATA) || in_container(AV_PKT_DATA_CONTENT_LIGHT_LEVEL) ||
+         av_frame_get_side_data(&frame, AV_FRAME_DATA_MASTERING_DISPLAY_METADATA) != nullptr ||
+         av_frame_get_side_data(&frame, AV_FRAME_DATA_CONTENT_LIGHT_LEVEL) != nullptr;
 }
 
 /// Where the matrix takes the picture's axes (x to the right, y down), as Exif numbers it.
@@ -127,6 +145,7 @@ MovieFacts facts_of(FfmpegInput& input, const AVFrame& first) {
   facts.codec = avcodec_get_name(stream.codecpar->codec_id);
   facts.stored = {first.width, first.height};
   facts.interlaced = is_interlaced(first);
+  facts.hdr_metadata = has_hdr_metadata(first, stream);
   facts.rate = rational(stream.avg_frame_rate);
   facts.time_base = rational(stream.time_base);
   facts.time_code = first_time_code(input.container());

@@ -47,12 +47,13 @@ struct MovieFacts {
   bool floating = false;
   int bits = 8;  ///< of a sample
   bool interlaced = false;
+  bool hdr_metadata = false;  ///< it says which display it was made on, or how bright it gets (HDR10)
   MovieColor color;
   Rational rate{0, 1};         ///< frames a second, on the average; 0: unknown
   Rational time_base{1, 1};    ///< seconds of a time stamp's unit
   std::vector<long long> pts;  ///< of each frame that the file has or ought to have, in the order in which they show
   std::size_t missing = 0;     ///< so many at the end are not there: the file is shorter than it says
-  std::string time_code;           ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
+  std::string time_code;       ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
   std::vector<std::string> notes;  ///< what people may want to know
 };
 

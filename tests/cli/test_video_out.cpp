@@ -125,6 +125,23 @@ TEST_F(VideoOut, LinearLightOfWidePrimariesIsTaggedAndRead) {
   }
 }
 
+TEST_F(VideoOut, StaticMetadataOfHdrIsToldWhereItGoes) {
+  make_frames(2);
+  ASSERT_EQ(
+      shell("ffmpeg -v error -y -start_number 1001 -i in/%04d.ppm -vf format=yuv420p10le -c:v libx265 -x265-params "
+            "'log-level=error:hdr10=1:master-display=G(13250,34500)B(7500,3000)R(34000,16000)WP(15635,16450)"
+            "L(10000000,1):max-cll=1000,400' -color_trc smpte2084 -color_primaries bt2020 -colorspace bt2020nc "
+            "hdr10.mp4")
+          .exit_code,
+      0);
+  constexpr const char* kGone =
+      "warning: pq.mp4: what the input says of its display and its brightest light (HDR10) is "
+      "not kept";
+  EXPECT_THAT(run({"run", "look.lua", "hdr10.mp4", "-o", "pq.mp4", "--codec", "h265", "--output-space", "pq"}).err,
+              HasSubstr(kGone));
+  EXPECT_THAT(run({"run", "look.lua", "hdr10.mp4", "-o", "sdr.mp4"}).err, Not(HasSubstr("HDR10")));
+}
+
 TEST_F(VideoOut, OptionsThatDoNotGoTogether) {
   make_frames(2);
   const auto before = files();
