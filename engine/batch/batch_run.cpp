@@ -52,7 +52,14 @@ std::string options_text(const PixelOptions& options) {
 /// they are made for.
 Result<void> follow_light(BatchRun& run, const Build& build, FrameLoop& loop) {
   AFTERGLOW_TRY(const auto spaces, run.session->preset().spaces());
-  if (ends_in_view(spaces)) loop.show_view();
+  if (ends_in_view(spaces)) {
+    loop.show_view();
+    if (const OutputSpace* space = run.request.loop.write.space)
+      run.events.diagnostics.warn(
+          fmt::format("--output-space {} encodes what are codes of a display already; without it "
+                      "outputs hold the codes as they are",
+                      space->name()));
+  }
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     if (spaces[i].warning.empty()) continue;
     const StackEntry& entry = (*build.entries)[i];

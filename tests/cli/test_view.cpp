@@ -46,6 +46,20 @@ TEST_F(View, IntegersAreItsCodesInEveryOutput) {
               1e-3);
 }
 
+TEST_F(View, AnotherSpaceForItsCodesIsWarnedAbout) {
+  constexpr const char* kTwice =
+      "warning: --output-space pq encodes what are codes of a display already; without it "
+      "outputs hold the codes as they are";
+  for (const char* output : {"a.png", "a.mkv"}) {
+    const Outcome asked = run({"run", "look.lua", "a.exr", "-o", output, "--output-space", "pq"});
+    EXPECT_EQ(asked.exit_code, kDone) << asked.err;
+    EXPECT_THAT(asked.err, HasSubstr(kTwice)) << output;
+    EXPECT_THAT(run({"run", "look.lua", "a.exr", "-o", output}).err, Not(HasSubstr("output-space")));
+    EXPECT_THAT(run({"run", "curve.lua", "a.exr", "-o", output, "--output-space", "pq"}).err,
+                Not(HasSubstr("output-space")));
+  }
+}
+
 TEST_F(View, NoPictureSaysThatTheyAreSrgb) {
   EXPECT_EQ(run({"run", "look.lua", "a.exr", "-o", "a.png"}).exit_code, kDone);
   EXPECT_THAT(read("a.png"), Not(HasSubstr("sRGB")));
