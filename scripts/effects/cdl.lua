@@ -1,8 +1,11 @@
 -- SPDX-License-Identifier: MIT
 -- CDL: the Color Decision List of the American Society of Cinematographers (v1.2): slope, offset and power for each channel, then
 -- saturation around Rec.709's luma. It is how looks travel between set, edit and grading. On scene-linear light there is no white to
--- hold on to: values above 1 stay what they are. What a file holds comes first, the settings behind it.
+-- hold on to: values above 1 stay what they are; below 0 is black. The numbers of a file do what the same settings do, and come first; the
+-- settings are behind them.
 local fx = require "afterglow"
+
+local of_cdl = 5  -- the kind of a step: engine/image/lut_file.h
 
 local function all(v, value) return v[1] == value and v[2] == value and v[3] == value end
 local function least(v) return math.min(v[1], v[2], v[3]) end
@@ -43,12 +46,12 @@ return fx.effect {
   build = function(g, s, source)
     if s.file ~= "" then
       local lookup = g:lookup { file = s.file, correction = s.correction }
-      local pass = { shader = "lut/apply", source = source, table = lookup.table, intensity = 1, before = 0, behind = 0, name = "file" }
-      for i, step in ipairs(lookup.steps) do
-        pass["kind" .. i], pass["row" .. i], pass["size" .. i] = step.kind, step.row, step.size
+      for _, step in ipairs(lookup.steps) do
+        if step.kind ~= of_cdl then error('file = "' .. s.file .. '" holds a table; effect \'lut\' reads those', 0) end
+        source = g:pass { shader = "cdl/file", source = source, table = lookup.table, row = step.row, name = "file" }
       end
-      source = g:pass(pass)  -- what saturation makes negative is cut off below
     end
+    if neutral(s) then return source end
     return g:pass { shader = "cdl/grade", source = source, slope = s.slope, offset = s.offset, power = s.power, saturation = s.saturation,
                     use_power = not all(s.power, 1) }
   end,

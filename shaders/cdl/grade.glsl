@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// ASC CDL: (c·slope + offset)^power, then saturation around Rec.709's luma. Light is not held to 1; what offset takes below black is black.
-#include "lib/color.glsl"
+// An ASC CDL of the effect's settings.
+#include "lib/cdl.glsl"
 
 layout(constant_id = 0) const bool use_power = true;
 
@@ -9,9 +9,4 @@ uniform vec3 offset;
 uniform vec3 power;
 uniform float saturation;
 
-vec4 apply(vec4 color) {
-  const vec3 kLuma = vec3(0.2126, 0.7152, 0.0722);
-  vec3 c = clamp(color.rgb * slope + offset, 0.0, kMaxLight);
-  if (use_power) c = min(pow(c, power), kMaxLight);
-  return vec4(clamp(lerp(vec3(dot(c, kLuma)), c, saturation), 0.0, kMaxLight), color.a);
-}
+vec4 apply(vec4 color) { return vec4(cdl_graded(color.rgb, slope, offset, power, saturation, use_power), color.a); }

@@ -148,6 +148,36 @@ TEST_F(Effects, CdlReadsFiles) {
              cdl(cdl(scene.source, night), behind), kSteep.full, kRgb));
 }
 
+/// The same numbers in a file and in settings, on colours that offset takes below black.
+TEST_F(Effects, CdlOfAFileIsThatOfSettings) {
+  const std::string correction =
+      "<ColorCorrection id=\"x\"><SOPNode><Slope>1.2 1 0.8</Slope><Offset>-0.05 0.01 -0.3</Offset>"
+      "<Power>1.1 0.9 1</Power></SOPNode><SatNode><Saturation>1.7</Saturation></SatNode></ColorCorrection>";
+  const std::string other =
+      "<ColorCorrection id=\"y\"><SOPNode><Slope>1 1 1</Slope><Offset>0 0 0</Offset>"
+      "<Power>1 1 1</Power></SOPNode></ColorCorrection>";
+  write_test_file("a.cc", correction);
+  write_test_file("a.ccc", "<ColorCorrectionCollection xmlns=\"urn:ASC:CDL:v1.2\">" + other + correction +
+                               "</ColorCorrectionCollection>");
+  write_test_file("a.cdl", "<ColorDecisionList xmlns=\"urn:ASC:CDL:v1.01\"><ColorDecision>" + correction +
+                               "</ColorDecision></ColorDecisionList>");
+  auto scene = random_scene({40, 30}, 95);
+  scene.source.pixels[0] = {0.001, 1.4, 1.9, 1};
+  scene.source.pixels[1] = {0, 0, 0, 1};
+  scene.source = in_floats(scene.source);
+  const auto made = [&](const std::string& entry) { return run_stack(entry, scene, Way::fused).result; };
+  const auto by_settings = made(
+      "fx.cdl { slope = { 1.2, 1, 0.8 }, offset = { -0.05, 0.01, -0.3 }, power = { 1.1, 0.9, 1 }, saturation = 1.7 }");
+  for (const char* file : {"file = \"a.cc\"", "file = \"a.ccc\", correction = \"x\"", "file = \"a.cdl\""}) {
+    const auto by_file = made(fmt::format("fx.cdl {{ {} }}", file));
+    for (std::size_t i = 0; i < by_file.size(); ++i)
+      ASSERT_NEAR(by_file[i], by_settings[i], 1e-6 * std::max(1.0F, std::abs(by_settings[i]))) << file << ", " << i;
+  }
+  write_test_file("cube.cc", "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
+  EXPECT_THAT(build_error("fx.cdl { file = \"cube.cc\" }", scene),
+              testing::HasSubstr("file = \"cube.cc\" holds a table; effect 'lut' reads those"));
+}
+
 EffectCase curved(const Curves& v) {
   static constexpr const char* kPoints[] = {"blacks", "shadows", "midtones", "highlights", "whites"};
   static constexpr const char* kChannels[] = {"red", "green", "blue"};
