@@ -24,9 +24,11 @@ struct OcioRequest {
   std::filesystem::path config;
   std::string from;           ///< colour space or role; empty: the working space
   std::string display, view;  ///< empty: the configuration's default
-  std::string to;             ///< colour space or role, in place of display and view
-  bool to_space = false;      ///< `to` counts, and not display and view; an empty `to` is the working space
-  std::string looks;          ///< "+name, -name" in place of those of the view; empty: those
+  std::string to;         ///< colour space or role, in place of display and view; like `from` a named transform where
+                          ///< there are no looks
+  bool to_space = false;  ///< `to` counts, and not display and view; an empty `to` is the working space
+  std::string looks;      ///< "+name, -name" in place of those of the view; empty: those. Behind each "|" others,
+                          ///< for where a file of those before is not there
   bool inverse = false;
 };
 
@@ -38,8 +40,10 @@ struct OcioSurvey {
   };
   std::optional<Fault> fault;  ///< of the request's names
   struct File {
-    std::string name;            ///< as the configuration writes it
-    std::filesystem::path path;  ///< where it is, or would be looked for first
+    std::string name;                              ///< as the configuration writes it
+    std::filesystem::path path;                    ///< where it is, or would be looked for first
+    std::vector<std::filesystem::path> elsewhere;  ///< the other places, of one that is not there
+    bool optional = false;  ///< it is not there, and the look that names it has others in its place ("a | b")
   };
   struct Display {
     std::string name;

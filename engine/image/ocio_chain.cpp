@@ -56,6 +56,10 @@ std::vector<std::string> space_names(const OCIO::Config& config) {
   return listed(config.getNumColorSpaces(), [&](int i) { return config.getColorSpaceNameByIndex(i); });
 }
 
+bool is_named(const OCIO::Config& config, const std::string& name) {
+  return !name.empty() && !config.getColorSpace(name.c_str()) && config.getNamedTransform(name.c_str());
+}
+
 struct Side {
   std::string space;
   bool matrix = false;  // between it and the working space stands the matrix to ACES2065-1
@@ -64,6 +68,8 @@ struct Side {
 Side side_of(const OCIO::Config& config, const char* key, const std::string& name) {
   if (!name.empty()) {
     if (config.getColorSpace(name.c_str())) return {name};
+    if (is_named(config, name))
+      fail(key, "a named transform goes with no looks and no display", space_names(config), {});
     fail(key, "the configuration has no colour space of that name", space_names(config), name);
   }
   for (const char* known : kLinearRec709)
@@ -84,19 +90,36 @@ void add_matrix(OCIO::GroupTransform& group, OCIO::TransformDirection direction)
   group.appendTransform(matrix);
 }
 
-void check_looks(const OCIO::Config& config, const std::string& looks) {
-  for (const auto& name : look_names(looks))
-    if (!config.getLook(name.c_str()))
-      fail("looks", fmt::format("the configuration has no look '{}'", name),
-           listed(config.getNumLooks(), [&](int i) { return config.getLookNameByIndex(i); }), name);
-}
-
 OCIO::LookTransformRcPtr look_between(const std::string& from, const std::string& to, const std::string& looks) {
   const auto look = OCIO::LookTransform::Create();
   look->setSrc(from.c_str());
   look->setDst(to.c_str());
   look->setLooks(looks.c_str());
   return look;
+}
+
+/// Of the choices that OpenColorIO comes to.
+void check_looks(const OCIO::Config& config, const std::string& from, const std::string& looks) {
+  for (const auto& names : look_choices(looks)) {
+    for (const auto& name : names)
+      if (!config.getLook(name.c_str()))
+        fail("looks", fmt::format("the configuration has no look '{}'", name),
+             listed(config.getNumLooks(), [&](int i) { return config.getLookNameByIndex(i); }), name);
+    if (has_files(config, look_between(from, from, join(names)))) return;
+  }
+}
+
+/// Named transforms, which know no space: on the other side colours stay as they are.
+OCIO::ColorSpaceTransformRcPtr named_change(const OCIO::Config& config, const OcioRequest& request) {
+  const auto side = [&](const char* key, const std::string& name) -> std::string {
+    if (is_named(config, name)) return name;
+    return name.empty() ? config.getColorSpaceNameByIndex(0) : side_of(config, key, name).space;
+  };
+  const auto change = OCIO::ColorSpaceTransform::Create();
+  change->setSrc(side("from", request.from).c_str());
+  change->setDst(side("to", request.to).c_str());
+  change->setDataBypass(false);
+  return change;
 }
 
 std::string display_of(const OCIO::Config& config, const OcioRequest& request) {
@@ -119,15 +142,16 @@ std::string view_of(const OCIO::Config& config, const OcioRequest& request, cons
 
 }  // namespace
 
-std::vector<std::string> look_names(const std::string& looks) {
-  std::string text = looks;
-  for (char& c : text)
-    if (c == ':' || c == '|') c = ',';
-  std::vector<std::string> out;
-  for (const auto& part : split(text, ',')) {
-    std::string name = trim(part);
-    if (!name.empty() && (name[0] == '+' || name[0] == '-')) name = trim(name.substr(1));
-    if (!name.empty()) out.push_back(std::move(name));
+std::vector<std::vector<std::string>> look_choices(const std::string& looks) {
+  std::vector<std::vector<std::string>> out;
+  for (std::string choice : split(looks, '|')) {
+    std::ranges::replace(choice, ':', ',');
+    std::vector<std::string>& names = out.emplace_back();
+    for (const auto& part : split(choice, ',')) {
+      std::string name = trim(part);
+      if (!name.empty() && (name[0] == '+' || name[0] == '-')) name = trim(name.substr(1));
+      if (!name.empty()) names.push_back(std::move(name));
+    }
   }
   return out;
 }
@@ -138,8 +162,13 @@ OCIO::ConstConfigRcPtr open_ocio(const OcioRequest& request) {
 
 OCIO::ConstGroupTransformRcPtr ocio_chain(const OCIO::Config& config, const OcioRequest& request) {
   const auto group = OCIO::GroupTransform::Create();
+  if (request.to_space && request.looks.empty() && (is_named(config, request.from) || is_named(config, request.to))) {
+    group->appendTransform(named_change(config, request));
+    if (request.inverse) group->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+    return group;
+  }
   const Side from = side_of(config, "from", request.from);
-  check_looks(config, request.looks);
+  check_looks(config, from.space, request.looks);
   if (from.matrix) add_matrix(*group, OCIO::TRANSFORM_DIR_FORWARD);
   if (request.to_space) {
     const Side to = side_of(config, "to", request.to);

@@ -25,7 +25,10 @@ OCIO::ConstGroupTransformRcPtr ocio_chain(const OCIO::Config& config, const Ocio
 /// spaces that are made of themselves, which OpenColorIO would follow until the stack is full; too much of them.
 std::vector<OcioSurvey::File> ocio_files(const OCIO::Config& config, const OCIO::GroupTransform& chain);
 
-/// "+a, -b | c" as OpenColorIO reads it: the names.
-std::vector<std::string> look_names(const std::string& looks);
+/// Whether all of these are there.
+bool has_files(const OCIO::Config& config, const OCIO::ConstTransformRcPtr& transform);
+
+/// "+a, -b | c" as OpenColorIO reads it: the names of each choice. It takes the first one whose files are all there.
+std::vector<std::vector<std::string>> look_choices(const std::string& looks);
 
 }  // namespace afterglow

@@ -37,6 +37,7 @@ class Walk {
   }
 
   std::vector<OcioSurvey::File> take() { return std::move(files_); }
+  bool all_there() const { return missing_ == 0; }
 
  private:
   // While it lives, a place is on the way; one that is met again within itself has no end.
@@ -62,8 +63,10 @@ class Walk {
     const std::string a = resolved(from), b = resolved(to);
     const auto first = config_.getColorSpace(a.c_str()), second = config_.getColorSpace(b.c_str());
     if (first && second && std::string(first->getName()) == second->getName()) return;
-    space(inverse ? b : a, true);
-    space(inverse ? a : b, false);
+    const bool named =
+        (!first && config_.getNamedTransform(a.c_str())) || (!second && config_.getNamedTransform(b.c_str()));
+    if (!named || !first) space(inverse ? b : a, true);
+    if (!named || !second) space(inverse ? a : b, false);
     if (first && second && first->getReferenceSpaceType() != second->getReferenceSpaceType())
       view_transform(config_.getDefaultSceneToDisplayViewTransform());
   }
@@ -92,9 +95,21 @@ class Walk {
     transform(known->getTransform(OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE), false);
   }
 
-  void looks(const char* names, const char* from, const char* to, bool inverse) {
+  // The first choice whose files are all there is taken; nobody looks at those behind it.
+  void looks(const char* text, const char* from, const char* to, bool inverse) {
+    const auto choices = look_choices(text ? text : "");
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      const int before = missing_, others = others_;
+      others_ += i + 1 < choices.size() ? 1 : 0;
+      looks(choices[i], from, to, inverse);
+      others_ = others;
+      if (missing_ == before) return;
+    }
+  }
+
+  void looks(const std::vector<std::string>& names, const char* from, const char* to, bool inverse) {
     std::string here = from ? from : "";
-    for (const auto& name : look_names(names ? names : "")) {
+    for (const auto& name : names) {
       const auto known = config_.getLook(name.c_str());
       if (!known) continue;
       const Place place(way_, fmt::format("the look '{}'", name), "look " + name);
@@ -116,24 +131,41 @@ class Walk {
   }
 
   void file(const char* source) {
-    const std::string name = source ? source : "";
-    OcioSurvey::File found{name, {}};
+    OcioSurvey::File found{.name = source ? source : "", .path = {}, .elsewhere = {}};
     try {
-      found.path = context_->resolveFileLocation(name.c_str());
+      found.path = context_->resolveFileLocation(found.name.c_str());
     } catch (const OCIO::Exception&) {  // not there
-      fs::path folder = context_->getNumSearchPaths() ? resolved(context_->getSearchPath(0)) : "";
-      if (folder.is_relative()) folder = fs::path(context_->getWorkingDir()) / folder;
-      found.path = (folder / resolved(source)).lexically_normal();
+      ++missing_;
+      found.optional = others_ > 0;
+      std::vector<fs::path> places = places_of(found.name);
+      found.path = places.front();
+      found.elsewhere.assign(places.begin() + 1, places.end());
     }
-    const auto same = [&](const OcioSurvey::File& other) { return other.path == found.path; };
-    if (std::ranges::none_of(files_, same)) files_.push_back(std::move(found));
+    const auto same = std::ranges::find(files_, found.path, &OcioSurvey::File::path);
+    if (same == files_.end()) {
+      files_.push_back(std::move(found));
+    } else {
+      same->optional = same->optional && found.optional;
+    }
+  }
+
+  /// Where a file would be looked for.
+  std::vector<fs::path> places_of(const std::string& name) const {
+    std::vector<fs::path> places;
+    for (int i = 0; i < std::max(context_->getNumSearchPaths(), 1); ++i) {
+      fs::path folder = i < context_->getNumSearchPaths() ? resolved(context_->getSearchPath(i)) : "";
+      if (folder.is_relative()) folder = fs::path(context_->getWorkingDir()) / folder;
+      places.push_back((folder / resolved(name.c_str())).lexically_normal());
+    }
+    return places;
   }
 
   const OCIO::Config& config_;
   OCIO::ConstContextRcPtr context_;
   std::vector<OcioSurvey::File> files_;
   std::vector<std::string> way_;
-  int count_ = 0;
+  int count_ = 0, missing_ = 0;
+  int others_ = 0;  // choices of looks on the way that have others in their place
 };
 
 }  // namespace
@@ -142,6 +174,12 @@ std::vector<OcioSurvey::File> ocio_files(const OCIO::Config& config, const OCIO:
   Walk walk(config);
   walk.transform(chain.createEditableCopy(), false);
   return walk.take();
+}
+
+bool has_files(const OCIO::Config& config, const OCIO::ConstTransformRcPtr& transform) {
+  Walk walk(config);
+  walk.transform(transform, false);
+  return walk.all_there();
 }
 
 }  // namespace afterglow

@@ -85,6 +85,7 @@ Result<OcioSurvey> survey(const OcioRequest& request) {
   const std::lock_guard lock(mutex);
   OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
   try {
+    OCIO::ClearAllCaches();  // it remembers which files are not there
     const auto config = open_ocio(request);
     OcioSurvey out;
     out.files = ocio_files(*config, *ocio_chain(*config, request));

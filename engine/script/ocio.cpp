@@ -80,7 +80,11 @@ void check_table(Runtime& runtime, const ChosenConfig& config, const std::string
   // First of all: nothing is told of what lies outside, not even whether it is there.
   if (config.by_script && !may_read(runtime, table.path))
     fail(fmt::format("{} lies outside of the folders that scripts may read", table.path.string()));
-  if (!is_file(table.path, runtime.path.record.get()))
+  for (const fs::path& place : table.elsewhere)  // one that appears there is noticed
+    if (!config.by_script || may_read(runtime, place)) is_file(place, runtime.path.record.get());
+  const bool there = is_file(table.path, runtime.path.record.get());
+  if (!there && table.optional) return;
+  if (!there)
     fail(fmt::format("there is no such file along the search path of the configuration, like {}", table.path.string()),
          nearest_name(table.path.filename().string(), names_in(table.path.parent_path())));
   const auto content = read_file(table.path, kMaxTable, runtime.path.record.get());
@@ -102,7 +106,8 @@ std::string request_text(const OcioRequest& request) {
 Dependencies dependencies(const ChosenConfig& config, const std::string& text, const OcioSurvey& survey) {
   Dependencies out;
   out.files.emplace(config.file, config.name);
-  for (const auto& table : survey.files) out.files.emplace(table.path, "");
+  for (const auto& table : survey.files)
+    if (!table.optional) out.files.emplace(table.path, "");
   for (const auto& name : ocio_variables(text)) out.environment.emplace(name, environment(name));
   return out;
 }

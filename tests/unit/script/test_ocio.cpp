@@ -202,6 +202,86 @@ TEST_F(OcioFiles, EditsAreNoticed) {
   EXPECT_EQ(first_changed(*looked), scene.folder() / "tables/curve.spi1d");
 }
 
+/// Looks with others in their place, as OpenColorIO takes them: the first whose files are there.
+class OcioChoices : public OcioFiles {
+ protected:
+  void SetUp() override {
+    OcioFiles::SetUp();
+    scene.write(
+        "choices.ocio",
+        "ocio_profile_version: 2\nsearch_path: \"shot:tables\"\nroles: {default: lin_rec709}\n"
+        "file_rules: [!<Rule> {name: Default, colorspace: lin_rec709}]\n"
+        "displays:\n  Monitor:\n    - !<View> {name: Film, colorspace: lin_rec709, looks: \"shotgrade | warm\"}\n"
+        "    - !<View> {name: Plain, colorspace: lin_rec709, looks: \"shotgrade |\"}\n"
+        "    - !<View> {name: Lost, colorspace: lin_rec709, looks: \"shotgrade | other\"}\n"
+        "looks:\n  - !<Look> {name: warm, process_space: lin_rec709, transform: !<CDLTransform> {slope: [1.1, 1, "
+        "1]}}\n  - !<Look> {name: shotgrade, process_space: lin_rec709, transform: !<FileTransform> {src: "
+        "shot.spi1d}}\n  - !<Look> {name: other, process_space: lin_rec709, transform: !<FileTransform> {src: "
+        "other.spi1d}}\n"
+        "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+        "named_transforms:\n  - !<NamedTransform> {name: twice, transform: !<MatrixTransform> {matrix: [2, 0, 0, "
+        "0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]}}\n");
+  }
+  std::string looked(const std::string& looks, const std::string& more = "") {
+    scene.stack("fx.ocio_transform { config = \"choices.ocio\", looks = \"" + looks + "\"" + more + " }");
+    return scene.build_error();
+  }
+  std::string changed(const std::string& settings) {
+    scene.stack("fx.ocio_transform { config = \"choices.ocio\", " + settings + " }");
+    return scene.build_error();
+  }
+};
+
+TEST_F(OcioChoices, TheFirstWhoseFilesAreThereIsTaken) {
+  for (const char* view : {"Film", "Plain"})
+    EXPECT_EQ(error(fmt::format("config = \"choices.ocio\", view = \"{}\"", view)), "") << view;
+  EXPECT_THAT(error("config = \"choices.ocio\", view = \"Lost\""), HasSubstr("'other.spi1d': there is no such file"));
+  for (const char* looks :
+       {"shotgrade | warm", "shotgrade |", "+warm | missing", "shotgrade, warm | -warm", "| missing"})
+    EXPECT_EQ(looked(looks), "") << looks;
+  // OpenColorIO comes to a look that it does not know.
+  for (const char* looks : {"missing | warm", "shotgrade | missing", "missing |"})
+    EXPECT_THAT(looked(looks), HasSubstr("the configuration has no look 'missing'")) << looks;
+  scene.write("tables/shot.spi1d", kCurve);
+  EXPECT_EQ(looked("shotgrade | missing"), "");
+  EXPECT_EQ(error("config = \"choices.ocio\", view = \"Lost\""), "");
+}
+
+TEST_F(OcioChoices, AFileThatAppearsIsNoticed) {
+  for (const char* place : {"shot/shot.spi1d", "tables/shot.spi1d"}) {
+    scene.stack("fx.ocio_display { config = \"choices.ocio\", view = \"Film\" }");
+    auto preset = scene.load();
+    ASSERT_TRUE(preset);
+    auto build = scene.evaluate(*preset);
+    ASSERT_TRUE(build) << build.error().text();
+    EXPECT_FALSE(first_changed(*build->files));
+    EXPECT_FALSE(build->depends.files.contains(scene.folder() / place)) << "nothing is made of it";
+    scene.write(place, kCurve);
+    EXPECT_EQ(first_changed(*build->files), scene.folder() / place);
+    auto again = scene.load();
+    auto graded = scene.evaluate(*again);
+    ASSERT_TRUE(graded) << graded.error().text();
+    EXPECT_NE(graded->graph.passes.at(0).shader, build->graph.passes.at(0).shader);
+    EXPECT_TRUE(graded->depends.files.contains(scene.folder() / place));
+    fs::remove(scene.folder() / place);
+  }
+}
+
+TEST_F(OcioChoices, WhatIsThereIsLookedAtLikeAnyOther) {
+  scene.write("tables/shot.spi1d", "rubbish");
+  EXPECT_THAT(looked("shotgrade | warm"), HasSubstr("OpenColorIO cannot read it"));
+}
+
+TEST_F(OcioChoices, NamedTransformsGoFromAndTo) {
+  EXPECT_EQ(changed("to = \"twice\""), "");
+  EXPECT_EQ(changed("from = \"twice\""), "");
+  EXPECT_EQ(changed("from = \"lin_rec709\", to = \"twice\", inverse = true"), "");
+  EXPECT_THAT(changed("to = \"twice\", looks = \"warm\""),
+              HasSubstr("a named transform goes with no looks and no display"));
+  EXPECT_THAT(error("config = \"choices.ocio\", from = \"twice\""), HasSubstr("a named transform goes with no looks"));
+  EXPECT_THAT(changed("from = \"lnh\", to = \"twice\""), HasSubstr("no colour space of that name"));
+}
+
 TEST_F(OcioFiles, LightIsThatOfADisplayBehindAView) {
   scene.stack("fx.ocio_display { config = \"studio.ocio\" }, fx.exposure { at = \"after_post_process\", ev = 1 }");
   auto preset = scene.load();
