@@ -24,7 +24,8 @@ Filter line(int count, double spacing, double angle) {
   return of_taps(std::move(taps));
 }
 
-/// Mean over `ratio` texels along an axis, 1 or more: each once where they are whole, else twice as many reads as texels.
+/// Mean over `ratio` texels along an axis, 1 or more: each once where they are whole, else twice as many reads as
+/// texels.
 std::vector<Tap> mean_over(double ratio) {
   if (ratio <= 1) return {{0, 1}};
   const bool whole = ratio == std::floor(ratio);

@@ -87,8 +87,7 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
     Error error = shader_error("", 0, fmt::format("unknown shader '{}'", name));
     constexpr std::string_view kExtension = ".glsl";
     const auto known = names();
-    const std::string plain =
-        name.ends_with(kExtension) ? name.substr(0, name.size() - kExtension.size()) : name;
+    const std::string plain = name.ends_with(kExtension) ? name.substr(0, name.size() - kExtension.size()) : name;
     error.nearest = std::ranges::count(known, plain) > 0 ? plain : nearest_name(plain, known);
     return error;
   }

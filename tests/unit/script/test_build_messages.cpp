@@ -219,9 +219,10 @@ TEST_F(BuildMessages, Histories) {
             "frame; allowed: g:keep(history, image)");
   EXPECT_EQ(error("g:history { name = \"old\" }"),
             at + "its size is not known; allowed: size = an image, {width, height}; first = an image");
-  EXPECT_EQ(error("g:history { name = \"old\", size = source,\n first = \"black\" }"),
-            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': first = \"black\" is neither an image nor "
-            "numbers; allowed: an image, a number, 1 to 4 numbers");
+  EXPECT_EQ(
+      error("g:history { name = \"old\", size = source,\n first = \"black\" }"),
+      "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': first = \"black\" is neither an image nor "
+      "numbers; allowed: an image, a number, 1 to 4 numbers");
   EXPECT_EQ(error("g:history { name = \"old\", size = source,\n pre_roll = -1 }"),
             "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': pre_roll = -1 is no number of frames; "
             "allowed: integer 0…10000");
