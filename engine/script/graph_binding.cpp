@@ -368,6 +368,11 @@ int graph_index(lua_State* lua) {
   return 1;
 }
 
+int refuse_change(lua_State* lua) {
+  const char* what = to_image(lua, 1) ? "an image" : "the graph";
+  throw failure(fmt::format("{} cannot be changed: {} = {}", what, read_value(lua, 2).text, read_value(lua, 3).shown()));
+}
+
 int image_index(lua_State* lua) {
   const ImageRef* image = to_image(lua, 1);
   const Value key = read_value(lua, 2);
@@ -405,9 +410,13 @@ void open_graph_binding(lua_State* lua) {
   }
   lua_pushcclosure(lua, (&native<graph_index, "">), 1);
   lua_setfield(lua, -2, "__index");
+  lua_pushcfunction(lua, (&native<refuse_change, "">));
+  lua_setfield(lua, -2, "__newindex");
   push_kind(lua, kImageKind);
   lua_pushcfunction(lua, (&native<image_index, "">));
   lua_setfield(lua, -2, "__index");
+  lua_pushcfunction(lua, (&native<refuse_change, "">));
+  lua_setfield(lua, -2, "__newindex");
   lua_pushcfunction(lua, (&native<image_equal, "">));
   lua_setfield(lua, -2, "__eq");
   lua_pop(lua, 2);

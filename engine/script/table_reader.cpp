@@ -20,7 +20,7 @@ TableReader::TableReader(lua_State* lua, int index, std::string what)
   luaL_checkstack(lua, 10, nullptr);
   if (!lua_istable(lua, index_))
     throw failure(fmt::format("{} takes a table, not {}", what_, read_value(lua, index_).shown()), {},
-                  what_ + " { … }");
+                  what_.substr(what_.find_last_of(' ') + 1) + " { … }");
   read_keys();
 }
 

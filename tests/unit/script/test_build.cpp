@@ -135,6 +135,33 @@ void add_pyramid(Scene& scene) {
   scene.stack("fx.pyramid {}");
 }
 
+TEST(Build, TheMeanOverAnAreaReadsEachTexelOfAWholeNumberOnce) {
+  const auto taps = [](const std::string& ratios) {
+    Scene scene;
+    scene.effect("small",
+                 "settings = {}, build = function(g, s, source)\n"
+                 "local small = g:filter { source = source, size = { 8, 8 }, filter = fx.filters.area(" +
+                     ratios +
+                     ") }\nreturn g:filter { source = small, size = source, filter = "
+                     "fx.filters.bilinear() } end,");
+    scene.stack("fx.small {}");
+    return scene.graph().passes.front().filter;
+  };
+  const auto expect = [](const std::vector<Tap>& taps, const std::vector<double>& offsets) {
+    ASSERT_EQ(taps.size(), offsets.size());
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      EXPECT_DOUBLE_EQ(taps[i].offset, offsets[i]);
+      EXPECT_DOUBLE_EQ(taps[i].weight, 1.0 / static_cast<double>(offsets.size()));
+    }
+  };
+  const Filter whole = taps("3, 4");
+  expect(whole.x, {-1, 0, 1});
+  expect(whole.y, {-1.5, -0.5, 0.5, 1.5});
+  const Filter between = taps("1.5, 1");
+  expect(between.x, {-0.5, 0, 0.5});
+  expect(between.y, {0});
+}
+
 TEST(Build, IsTheSameEveryTime) {
   Scene scene;
   add_pyramid(scene);

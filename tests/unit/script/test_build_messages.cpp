@@ -199,10 +199,11 @@ TEST_F(BuildMessages, TheGraphAndImages) {
       "frame_time, history, image, input, keep, length_scale, lookup, ocio, pass, skip, time; did you mean 'pass'?");
   EXPECT_EQ(error("local w = source.widht"),
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");
-  EXPECT_EQ(error("source.width = 5"), "effects/probe.lua:4: error: attempt to index a image value (local 'source')");
+  EXPECT_EQ(error("source.width = 5"), "effects/probe.lua:4: error: an image cannot be changed: width = 5");
+  EXPECT_EQ(error("g.frame = 5"), "effects/probe.lua:4: error: the graph cannot be changed: frame = 5");
   EXPECT_EQ(
       error("return g:pass(5)"),
-      "effects/probe.lua:4: error: effect 'probe': g:pass takes a table, not 5; allowed: effect 'probe': g:pass { … }");
+      "effects/probe.lua:4: error: effect 'probe': g:pass takes a table, not 5; allowed: g:pass { … }");
   EXPECT_EQ(error("return g:pass { shader = \"plain\", source = source,\n name = \"a b\" }"),
             "effects/probe.lua:5: error: pass 'glow.plain' of effect 'probe': 'a b' cannot be the name of a pass; "
             "allowed: 1 to 64 letters, digits, '_', '-', '[' and ']'");
