@@ -175,7 +175,8 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
   auto built = state.build(context, diagnostics);
   if (!built) {
     Error error = std::move(built).error();
-    if (context.frame != state.first_frame) error.trail.push_back("in frame " + number_text(context.frame));
+    const bool says_so = error.message.find(" at frame ") != std::string::npos;
+    if (context.frame != state.first_frame && !says_so) error.trail.push_back("in frame " + number_text(context.frame));
     return error;
   }
   Graph graph = std::move(built).value();

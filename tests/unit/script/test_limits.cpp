@@ -211,9 +211,9 @@ TEST(Limits, AFailedBuildLeavesAUsableState) {
     EXPECT_EQ(scene.shorten(scene.build(*preset).error().text()),
               "effects/moody.lua:4: " + kBudget + "\n  in effect 'moody' of preset.lua:3");
     scene.context.frame = 2;
-    EXPECT_EQ(
-        scene.shorten(scene.build(*preset).error().text()),
-        "effects/moody.lua:5: error: memory limit reached: more than 16 MiB\n  in effect 'moody' of preset.lua:3");
+    EXPECT_EQ(scene.shorten(scene.build(*preset).error().text()),
+              "effects/moody.lua:5: error: memory limit reached: more than 16 MiB\n  in effect 'moody' of "
+              "preset.lua:3\n  in frame 2");
     scene.context.frame = 3;
     EXPECT_TRUE(scene.build(*preset));
   }
