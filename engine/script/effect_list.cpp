@@ -14,19 +14,19 @@ using namespace script;
 
 namespace {
 
-/// A state each: an effect that spends its budget or memory takes nothing from the others.
-Result<EffectSchema> load(const SearchPath& path, const std::string& name, ScriptKind kind, Diagnostics& diagnostics) {
-  AFTERGLOW_TRY(const std::unique_ptr<Runtime> runtime, Runtime::create(path, ScriptLimits{}, diagnostics));
+Result<EffectSchema> load(Runtime& runtime, const std::string& name, ScriptKind kind) {
   int index = -1;
-  auto error = runtime->box->run(name + ".lua", [&](lua_State* lua) { index = find_effect(lua, name, kind); });
+  auto error = runtime.box->run(name + ".lua", [&](lua_State* lua) { index = find_effect(lua, name, kind); });
   if (error) return *std::move(error);
-  return runtime->effects[static_cast<std::size_t>(index)].schema;
+  return runtime.effects[static_cast<std::size_t>(index)].schema;
 }
 
 Result<std::vector<EffectSchema>> list_scripts(const SearchPath& path, Diagnostics& diagnostics, ScriptKind kind) {
   std::vector<EffectSchema> schemas;
   for (const auto& name : effect_names(path, kind)) {
-    if (auto schema = load(path, name, kind, diagnostics))
+    // A state each: an effect that spends its budget or memory takes nothing from the others.
+    AFTERGLOW_TRY(const std::unique_ptr<Runtime> runtime, Runtime::create(path, ScriptLimits{}, diagnostics));
+    if (auto schema = load(*runtime, name, kind))
       schemas.push_back(std::move(schema).value());
     else
       diagnostics.warn(fmt::format("{} '{}' is left out: {}", kind == ScriptKind::mask ? "mask" : "effect", name,
@@ -49,7 +49,9 @@ std::optional<Error> effect_error(const SearchPath& path, const std::string& nam
   const auto known = effect_names(path, kind);
   if (std::ranges::find(known, own) == known.end()) return std::nullopt;
   Diagnostics silent;
-  auto schema = load(path, own, kind, silent);
+  auto runtime = Runtime::create(path, ScriptLimits{}, silent);
+  if (!runtime) return std::move(runtime).error();
+  auto schema = load(**runtime, own, kind);
   return schema ? std::nullopt : std::optional(std::move(schema).error());
 }
 
