@@ -66,6 +66,7 @@ Result<CalibrationResult> calibrate(Device& device, const CalibrationRequest& re
                    .picture = &picture,
                    .repeat = request.repeat,
                    .quality = true,
+                   .visible = false,
                    .passes = false};
   for (const ExecutionConfig& choice : candidates()) cell.variants.push_back({execution_name(choice), choice, {}, {}});
   AFTERGLOW_TRY(out.cell, measure_cell(device, cell, diagnostics, step));

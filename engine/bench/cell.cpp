@@ -81,7 +81,7 @@ Result<Cell> measure_cell(Device& device, const CellRequest& request, Diagnostic
                   PreparedStack::create(device, request.preset, request.base, variant, picture, diagnostics));
     std::vector<float> rgb;
     AFTERGLOW_TRY(Point point, stack.try_out(device, picture, request.passes, rgb));
-    if (!truth.rgb.empty()) point.quality = compare_pictures(rgb, truth.rgb, cell.size);
+    if (!truth.rgb.empty()) point.quality = compare_pictures(rgb, truth.rgb, cell.size, request.visible);
     cell.points.push_back(std::move(point));
     field.stacks.push_back(std::move(stack));
   }

@@ -14,6 +14,7 @@ struct CellRequest {
   const Picture* picture = nullptr;
   int repeat = 9;
   bool quality = true;  ///< compare with the truth, up to kMostPixelsForTruth
+  bool visible = true;  ///< and tell what people would see, which takes longer than all else
   bool passes = true;   ///< time each kernel
 };
 

@@ -31,16 +31,16 @@ double display_psnr(std::span<const float> result, std::span<const double> truth
   return 10 * std::log10(static_cast<double>(result.size()) / sum);
 }
 
-Quality compare_pictures(std::span<const float> result, std::span<const double> truth, Size size) {
+Quality compare_pictures(std::span<const float> result, std::span<const double> truth, Size size, bool visible) {
   Quality out{.error = measure_error(result, truth), .psnr = display_psnr(result, truth), .visible = {}};
-  if (size.area() > kMostPixelsForYee) return out;
+  if (!visible || size.area() > kMostPixelsForYee) return out;
   const auto as_displayed = [&](const auto& values) {
     Image image(size.width, size.height, 3);
     std::ranges::transform(values, image.pixels.begin(),
                            [](auto v) { return std::clamp(static_cast<float>(v), 0.0f, 1.0f); });
     return image;
   };
-  if (const auto visible = visible_difference(as_displayed(result), as_displayed(truth))) out.visible = *visible;
+  if (const auto share = visible_difference(as_displayed(result), as_displayed(truth))) out.visible = *share;
   return out;
 }
 
