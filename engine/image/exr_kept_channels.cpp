@@ -2,12 +2,11 @@
 #include "image/exr_kept_channels.h"
 
 #include <fmt/format.h>
-#include <half.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
+#include "core/half.h"
 #include "image/exr_line_writer.h"
 #include "image/layers.h"
 #include "image/read_plan.h"
@@ -15,12 +14,10 @@
 namespace afterglow {
 namespace {
 
-constexpr float kLargestHalf = 65504;
-
 std::array<std::uint8_t, 4> bytes_of(Imf::PixelType type, float value) {
   std::array<std::uint8_t, 4> bytes{};
   if (type == Imf::HALF) {
-    const std::uint16_t half = Imath::half(std::min(value, kLargestHalf)).bits();
+    const std::uint16_t half = half_from_float(std::min(value, kMaxHalf));
     std::memcpy(bytes.data(), &half, sizeof half);
   } else if (type == Imf::FLOAT) {
     std::memcpy(bytes.data(), &value, sizeof value);

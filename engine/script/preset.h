@@ -206,11 +206,11 @@ Result<void> check_new_look_name(const std::string& name);
 
 /// Every effect on the search path, by name. Scripts that fail to load are warned about and left out.
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics);
+/// The same for masks.
+Result<std::vector<EffectSchema>> list_masks(const SearchPath& path, Diagnostics& diagnostics);
 /// Why the script of an effect (or of a mask, "mask.NAME") that is on the search path cannot be used; none: it can, or
 /// there is none of that name.
 std::optional<Error> effect_error(const SearchPath& path, const std::string& name);
-/// The same for masks.
-Result<std::vector<EffectSchema>> list_masks(const SearchPath& path, Diagnostics& diagnostics);
 /// The text of a lua-language-server completion file (`_meta`) for these effects and masks.
 std::string completion_text(const std::vector<EffectSchema>& effects, const std::vector<EffectSchema>& masks);
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/text.h"
 #include "shader/foreign_words.h"
@@ -134,6 +135,11 @@ LogLine first_place(const std::string& glsl, const std::string& name) {
   return {};
 }
 
+Error error_where_named(const LogLine& place, const std::vector<std::string>& file_names, std::string message) {
+  return shader_error(place.file < file_names.size() ? file_names[place.file] : std::string(), place.line,
+                      std::move(message));
+}
+
 /// "Linking fragment stage: Recursion detected:" and then "    f(vf4; calling g(vf4;", without a place.
 std::optional<Error> recursion_error(const std::string& log, const std::string& glsl,
                                      const std::vector<std::string>& file_names) {
@@ -145,8 +151,8 @@ std::optional<Error> recursion_error(const std::string& log, const std::string& 
                     called = until_parenthesis(calls + kCalling.size());
   const LogLine place = first_place(glsl, caller);
   const std::string by = called == caller ? "" : fmt::format(" by way of '{}'", original_names(called));
-  return shader_error(place.file < file_names.size() ? file_names[place.file] : std::string(), place.line,
-                      fmt::format("'{}' calls itself{}: GLSL has no recursion", original_names(caller), by));
+  return error_where_named(place, file_names,
+                           fmt::format("'{}' calls itself{}: GLSL has no recursion", original_names(caller), by));
 }
 
 /// "Linking fragment stage: No function definition (body) found:" and then "    f(f1;", without a place.
@@ -159,8 +165,8 @@ std::optional<Error> undefined_error(const std::string& log, const std::string& 
   const std::string name = trim(log.substr(from, log.find('(', from) - from));
   if (name.empty()) return std::nullopt;
   const LogLine place = first_place(glsl, name);
-  return shader_error(place.file < file_names.size() ? file_names[place.file] : std::string(), place.line,
-                      fmt::format("'{}' is declared here, but defined nowhere", original_names(name)));
+  return error_where_named(place, file_names,
+                           fmt::format("'{}' is declared here, but defined nowhere", original_names(name)));
 }
 
 constexpr auto kRules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
