@@ -24,11 +24,15 @@ std::vector<ExecutionConfig> candidates() {
   for (const Storage storage : {Storage::fp32, Storage::fp16})
     for (const bool hardware_filter : {false, true})
       for (const bool storage_reads : {false, true})
-        for (const int rows : {1, 4, kMaxRows}) {
-          if (hardware_filter && rows > 1) continue;  // a filtered fetch serves one row
-          out.push_back(
-              {.storage = storage, .hardware_filter = hardware_filter, .storage_reads = storage_reads, .rows = rows});
-        }
+        for (const bool dispatched : {false, true})
+          for (const int rows : {1, 4, kMaxRows}) {
+            if (hardware_filter && rows > 1) continue;  // a filtered fetch serves one row
+            out.push_back({.storage = storage,
+                           .hardware_filter = hardware_filter,
+                           .storage_reads = storage_reads,
+                           .dispatched = dispatched,
+                           .rows = rows});
+          }
   return out;
 }
 

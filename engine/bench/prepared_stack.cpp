@@ -66,7 +66,7 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
 PictureKind PreparedStack::picture_kind() const {
   const Program* program = stack_->program();
   if (!program) return {};
-  return {program->storage_format(), program->result_format(), program->result_rows()};
+  return {program->storage_format(), program->result_format(), program->result_rows(), program->stores_result()};
 }
 
 Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb) {

@@ -28,8 +28,8 @@ void record(const Device& device, VkCommandBuffer commands, const VkMemoryBarrie
 }  // namespace
 
 Writing writing_of(const PlanKernel& kernel) {
-  if (!kernel.compute) return {};
-  return {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL};
+  if (!kernel.dispatched) return {};
+  return kStored;
 }
 
 VkImageMemoryBarrier2 before_writing(VkImage image, const Writing& writing) {

@@ -16,6 +16,8 @@ struct Writing {
   VkAccessFlags2 access = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   VkImageLayout layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 };
+inline constexpr Writing kStored{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                                 VK_IMAGE_LAYOUT_GENERAL};
 Writing writing_of(const PlanKernel& kernel);
 
 /// A target that is about to be written over. What it held is lost. Its memory may be that of images which earlier

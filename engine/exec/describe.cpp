@@ -63,6 +63,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   KernelDesc desc;
   desc.config = options.config;
   desc.config.rows = 1;
+  desc.config.dispatched = kernel.dispatched;
   const bool half = options.config.storage == Storage::fp16 && !is_precise(graph, kernel.output);
   desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
   desc.target_channels = stored_channels(graph, kernel.output, options.config);
@@ -81,7 +82,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
       desc.ratio_x = desc.ratio_y = AxisRatio::same;
     }
   } else if (info_of(anchor.kind).begins) {
-    AFTERGLOW_TRY(desc.sample, stage_of(shaders, anchor, kernel.compute));
+    AFTERGLOW_TRY(desc.sample, stage_of(shaders, anchor, kernel.workgroups));
     desc.sample->channels = graph.images[anchor.output].channels;
     desc.sample->reach = anchor.reach;
   } else {

@@ -26,7 +26,7 @@ bool holds_few_channels(const Device& device, const Graph& graph, const Executio
   if (config.hardware_filter) wanted |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
   const bool computed = std::ranges::any_of(
       graph.passes, [](const Pass& pass) { return pass.kind == PassKind::compute || !pass.by_workgroups.empty(); });
-  const bool stored = config.storage_reads || computed;
+  const bool stored = config.storage_reads || config.dispatched || computed;
   if (stored) wanted |= VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
   return std::ranges::all_of(graph.images, [&](const GraphImage& image) {
     if (image.channels == 4) return true;

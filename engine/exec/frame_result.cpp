@@ -11,13 +11,15 @@
 namespace afterglow {
 
 ImageDesc FrameResult::wanted_by(const Program& program) {
+  const VkImageUsageFlags stored = program.stores_result() ? VK_IMAGE_USAGE_STORAGE_BIT : 0;
   return {.name = "result",
           .size = program.graph().images[program.graph().result].size,
           .format = program.result_format(),
-          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};
+          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | stored};
 }
 
 Result<void> FrameResult::take(const ImageDesc& desc, int rows) {
+  writing_ = desc.usage & VK_IMAGE_USAGE_STORAGE_BIT ? kStored : Writing{};
   std::erase_if(others_, [&](const auto& other) { return !other.second.fits(desc, other.first); });
   if (image_.fits(desc, rows)) return {};
   const int has = std::max(image_.rows.rows(), 1);
@@ -39,17 +41,15 @@ std::vector<VkImage> FrameResult::images() const {
   return all;
 }
 
-VkImageLayout FrameResult::drawing_layout() const {
-  return image_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+VkImageLayout FrameResult::writing_layout() const {
+  return image_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : writing_.layout;
 }
 
 void FrameResult::before(VkCommandBuffer commands) {
   std::vector<VkImageMemoryBarrier2> barriers;
   for (const VkImage image : images())
-    barriers.push_back(
-        image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                      0, VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawing_layout()));
+    barriers.push_back(image_barrier(image, writing_.stage | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
+                                     VK_IMAGE_LAYOUT_UNDEFINED, writing_.stage, writing_.access, writing_layout()));
   record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
@@ -58,8 +58,7 @@ void FrameResult::after(VkCommandBuffer commands) {
   image_.layout = general ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   std::vector<VkImageMemoryBarrier2> barriers;
   for (const VkImage image : images())
-    barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawing_layout(), shown_stage(image_),
+    barriers.push_back(image_barrier(image, writing_.stage, writing_.access, writing_layout(), shown_stage(image_),
                                      shown_access(image_, VK_ACCESS_2_HOST_READ_BIT), image_.layout));
   record_barriers(*device_, commands, barriers.data(), barriers.size());
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "exec/barriers.h"
 #include "exec/frame.h"
 #include "exec/frame_image.h"
 #include "exec/staging.h"
@@ -43,12 +44,13 @@ class FrameResult {
  private:
   using LookAtRow = std::function<void(const std::byte* from, VkFormat format)>;
   Result<std::uint64_t> download_looking(Staging& staging, const Rect& part, HostResult& out, const LookAtRow& look);
-  VkImageLayout drawing_layout() const;
+  VkImageLayout writing_layout() const;
   Result<std::uint64_t> over_rows_of(Staging& staging, const Rect& part,
                                      const std::function<std::uint64_t(int y, const std::byte* from)>& row);
 
   Device* device_;
   bool direct_;
+  Writing writing_;  ///< how the program that took it last writes
   FrameImage image_;
   std::map<int, FrameImage> others_;  ///< by rows: programs that take turns may write different numbers of them
   int made_ = 0;

@@ -64,8 +64,8 @@ Result<void> Histories::fit(const Device& device, const Graph& graph, const Opti
     total += bytes_of(wanted[history.name]);
   }
   if (total > options.max_memory)
-    return Error{ErrorKind::io, fmt::format("the stack needs {} for its histories, more than the {}", memory_text(total),
-                                            allowed_memory(options.max_memory))};
+    return Error{ErrorKind::io, fmt::format("the stack needs {} for its histories, more than the {}",
+                                            memory_text(total), allowed_memory(options.max_memory))};
   std::erase_if(kept_, [&](const auto& kept) { return !wanted.contains(kept.first); });
   for (const auto& history : graph.histories) {
     const Hash part = history_part(graph, history);

@@ -24,7 +24,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   auto state = std::make_unique<State>(device, graph, options);
   state->settle_config();
   state->settle_workgroups(shaders);
-  state->plan = make_plan(graph, state->options.config);
+  state->plan = make_plan(graph, state->options.config, state->may_store_result());
   static std::atomic<std::uint64_t> programs = 0;
   state->serial = ++programs;
   state->made.resize(state->plan.kernels.size());
@@ -91,6 +91,12 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   s.inputs = std::move(bound);
   for (int which = 0; which < s.sets(); ++which) s.write_set(which, [&](ImageId id) { return s.look_at_input(id); });
   s.result = s.result_rows > 1 ? result.rows : std::vector{result.view};
+  if (s.stores_result()) {
+    const auto stored = [&](ImageId id) {
+      return id == s.graph.result ? State::Seen{result.view, VK_IMAGE_LAYOUT_GENERAL} : State::Seen{};
+    };
+    for (int which = 0; which < s.sets(); ++which) s.write_set(which, stored);
+  }
   ++s.bindings;
   return {};
 }
@@ -113,6 +119,7 @@ void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std
     s.record_some(commands, run, stamp);
   else
     s.record_all(commands, stamp);
+  s.loops.record(s.device, commands);
 }
 
 const Plan& Program::plan() const { return state_->plan; }
@@ -136,6 +143,7 @@ const ExecutionConfig& Program::config() const { return state_->options.config; 
 bool Program::flags_non_finite() const { return state_->options.flag_non_finite; }
 VkFormat Program::result_format() const { return state_->result_format(); }
 int Program::result_rows() const { return state_->result_rows; }
+bool Program::stores_result() const { return state_->stores_result(); }
 VkImageLayout Program::input_layout() const { return state_->input_layout(); }
 
 std::optional<Program::Transient> Program::transient(ImageId image) const {

@@ -46,6 +46,7 @@ struct ProgramOptions {
   /// elsewhere 1 (`unorm8`: what the last pass gave). See FiniteCheck.
   bool flag_non_finite = false;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
+  bool result_stored = false;   ///< likewise, and it has STORAGE usage and comes in GENERAL (`Program::stores_result`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
@@ -66,8 +67,8 @@ struct ProgramMemory {
 };
 
 /// An image of the caller's or of a Frame that a program reads or writes. Reads happen in SHADER_READ_ONLY_OPTIMAL, the
-/// result is written in COLOR_ATTACHMENT_OPTIMAL (by rows: in GENERAL); the caller brings images into these layouts and
-/// is told so in `record`.
+/// result is written in COLOR_ATTACHMENT_OPTIMAL (by rows, and stored: in GENERAL); the caller brings images into these
+/// layouts and is told so in `record`.
 struct ImageBinding {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
@@ -137,8 +138,9 @@ class Program {
 
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible
   /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL (with
-  /// `result_rows` above 1, it and its targets in GENERAL) and is left so. `timestamps`: pool with
-  /// kernels().size()+1 queries, or null. `run`: as `begin_run` said, or empty for all.
+  /// `result_rows` above 1, it and its targets in GENERAL; with `stores_result` in GENERAL, ready to be written by
+  /// compute shaders) and is left so. `timestamps`: pool with kernels().size()+1 queries, or null. `run`: as
+  /// `begin_run` said, or empty for all.
   void record(VkCommandBuffer commands, VkQueryPool timestamps = VK_NULL_HANDLE,
               const std::vector<bool>& run = {}) const;
 
@@ -166,6 +168,8 @@ class Program {
   VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::unorm8
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;
+  /// With `result_stored`: the result is not drawn, but stored by a compute shader.
+  bool stores_result() const;
   /// The layout in which `record` wants the inputs: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
   VkImageLayout input_layout() const;
   /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs,

@@ -68,12 +68,13 @@ ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, c
                              const ExecutionConfig& config, std::set<Hash>& checked) {
   ProgramOptions options{.config = config, .inputs_are_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
+  options.config.guard_loops = true;
   ShaderFindings found;
   std::vector<KernelDesc> seen;               // most levels of a pyramid are described alike
   for (const bool compute : {false, true}) {  // both ways of passes that have two
     options.config.compute = compute;
     for (const auto& kernel : make_plan(work.graph, options.config).kernels) {
-      if (compute && !kernel.compute) continue;
+      if (compute && !kernel.workgroups) continue;
       const auto check = [&]() -> Result<void> {
         AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
         if (std::ranges::any_of(seen, [&](const KernelDesc& other) { return same_kernel(other, desc); })) return {};
@@ -120,7 +121,7 @@ ProgramOptions ProgramCache::State::program_options() const {
   out.config = options.config;
   out.config.storage = storage();
   out.reference = options.reference;
-  out.inputs_are_storage = out.result_by_rows = options.own_images;
+  out.inputs_are_storage = out.result_by_rows = out.result_stored = options.own_images;
   out.flag_non_finite = options.flag_non_finite;
   out.keep_images = options.keep_images;
   out.max_memory = options.max_memory;

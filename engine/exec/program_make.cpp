@@ -20,7 +20,7 @@ void Program::State::settle_config() {
   ExecutionConfig& config = options.config;
   if (options.reference) {
     config.fusion = Fusion::none;
-    config.share_memory = config.hardware_filter = config.compute = false;
+    config.share_memory = config.hardware_filter = config.compute = config.dispatched = false;
     config.rows = 1;
   }
   format = config.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -37,7 +37,7 @@ void Program::State::settle_config() {
   config.four_channels = config.four_channels || !holds_few_channels(device, graph, config);
   if (device.is_cpu()) fit_to_cpu_driver(config);
   config.two_draws = config.two_draws && !options.reference;
-  config.guard_loops = config.guard_loops && device.stores_from_fragments();
+  config.guard_loops = device.stores_from_fragments();
 }
 
 /// Passes that have two ways are drawn where a device is too small for the workgroups of the other.
@@ -60,6 +60,16 @@ ImageDesc Program::State::result_desc() const {
           .tiling = VK_IMAGE_TILING_LINEAR};
 }
 
+bool Program::State::may_store_result() const {
+  return options.result_stored && options.config.dispatched &&
+         supports(device, result_format(), VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+}
+
+bool Program::State::stores_result() const {
+  return std::ranges::any_of(
+      plan.kernels, [this](const PlanKernel& kernel) { return kernel.dispatched && kernel.output == graph.result; });
+}
+
 VkImageLayout Program::State::target_layout(ImageId output) const {
   if (history_of_next(graph, output)) return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   const bool general = output == graph.result ? result_rows > 1 : linear;
@@ -79,7 +89,7 @@ Result<void> Program::State::check() {
   }
   for (const auto& kernel : plan.kernels) {
     const GraphImage& image = graph.images[kernel.output];
-    const VkImageUsageFlags stored = kernel.compute ? VK_IMAGE_USAGE_STORAGE_BIT : 0;
+    const VkImageUsageFlags stored = kernel.dispatched ? VK_IMAGE_USAGE_STORAGE_BIT : 0;
     AFTERGLOW_CHECK(
         check_image(device, {.name = image.name,
                              .size = image.size,
@@ -110,9 +120,9 @@ ArenaOptions Program::State::arena_options(const std::vector<KernelDesc>& descs)
   for (std::size_t id = 0; id < graph.images.size(); ++id)
     wanted.channels.push_back(stored_channels(graph, static_cast<ImageId>(id), options.config));
   for (const auto& kernel : plan.kernels)
-    if (kernel.compute) wanted.stored.insert(kernel.output);
+    if (kernel.dispatched) wanted.stored.insert(kernel.output);
   if (linear)
-    for (const auto& desc : descs) wanted.rows.push_back(desc.config.rows);
+    for (const auto& desc : descs) wanted.rows.push_back(desc.config.dispatched ? 1 : desc.config.rows);
   return wanted;
 }
 
@@ -142,10 +152,12 @@ Result<void> Program::State::settle_rows(KernelCompiler& compiler, std::vector<K
 Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   for (std::size_t i = 0; i < descs.size(); ++i)
     if (history_of_next(graph, plan.kernels[i].output)) descs[i].config.rows = 1;
-  const auto by_rows = [](const KernelDesc& desc) { return desc.config.rows > 1; };
+  // A compute shader stores its rows one by one.
+  const auto by_rows = [](const KernelDesc& desc) { return desc.config.rows > 1 && !desc.config.dispatched; };
   linear = std::ranges::any_of(descs, by_rows) && can_be_linear();
   for (std::size_t i = 0; i < descs.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
+    if (plan.kernels[i].dispatched) continue;
     if (output == graph.result) {
       descs[i].config.rows =
           options.result_by_rows ? RowTargets::possible(device, result_desc(), descs[i].config.rows) : 1;
@@ -190,7 +202,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     AFTERGLOW_TRY(std::vector<ImageId> bind, images_of_slots(graph, plan.kernels[i], compiled_of(i)));
     reads.push_back(reads_of(bind));
-    if (plan.kernels[i].compute) bind.push_back(plan.kernels[i].output);
+    if (plan.kernels[i].dispatched) bind.push_back(plan.kernels[i].output);
     images.push_back(std::move(bind));
     pointers.push_back(&compiled_of(i));
   }

@@ -72,6 +72,8 @@ void Program::State::make_commands() {
            .part = parts.kernels[i],
            .group = compiled_of(i).workgroup ? std::optional(compiled_of(i).workgroup->pixels) : std::nullopt,
            .target_layout = target_layout(output),
+           .turn_before = i == 0 || !plan.kernels[i - 1].dispatched,
+           .turn_after = i + 1 == plan.kernels.size() || !plan.kernels[i + 1].dispatched,
            .barriers = std::move(barriers[i]),
            .after = std::move(after)});
     }
@@ -104,6 +106,7 @@ KernelCommands Program::State::commands_of(std::size_t kernel) const {
 void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const {
   KernelCommands one = commands_of(kernel);
   one.barriers = std::move(barriers);
+  one.turn_before = one.turn_after = true;  // others may stand beside it
   record_kernel(device, commands, one, result);
 }
 
@@ -129,6 +132,7 @@ void Program::record_a_pixel_each(VkCommandBuffer commands, bool backwards) {
   for (std::size_t turn = 0; turn < count; ++turn) {
     KernelCommands one = s.commands_of(backwards && s.linear ? count - 1 - turn : turn);
     one.part = {0, 0, 1, 1};
+    one.turn_before = one.turn_after = true;
     record_kernel(s.device, commands, one, s.result);
   }
 }

@@ -8,12 +8,12 @@
 
 #include "exec/arena.h"
 #include "exec/barriers.h"
-#include "exec/cpu/loop_watch.h"
 #include "exec/data_images.h"
 #include "exec/describe.h"
 #include "exec/descriptors.h"
 #include "exec/histories.h"
 #include "exec/kernel_pipelines.h"
+#include "exec/loop_watch.h"
 #include "exec/parameters.h"
 #include "exec/program.h"
 #include "exec/record.h"
@@ -82,6 +82,9 @@ struct Program::State {
                                                                       : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
   VkImageLayout target_layout(ImageId output) const;
+  /// Whether the result's image may be one that compute shaders store into.
+  bool may_store_result() const;
+  bool stores_result() const;
   VkFormat result_format() const { return options.unorm8 ? VK_FORMAT_R8G8B8A8_UNORM : format; }
   VkFormat image_format(ImageId image) const;
   ImageDesc result_desc() const;

@@ -37,7 +37,7 @@ void begin_marks(const Device& device, VkCommandBuffer commands, const GpuImage&
 
 /// Every workgroup that makes a pixel of the part.
 void dispatch(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel) {
-  record_compute_turn(device, commands, true);
+  if (kernel.turn_before) record_compute_turn(device, commands, true);
   bind(device, commands, kernel);
   const auto groups = [](int first, int count, int pixels) {
     const int begin = first / pixels, end = (first + count + pixels - 1) / pixels;
@@ -46,7 +46,7 @@ void dispatch(const Device& device, VkCommandBuffer commands, const KernelComman
   const auto [x, across] = groups(kernel.part.x, kernel.part.width, kernel.group->width);
   const auto [y, down] = groups(kernel.part.y, kernel.part.height, kernel.group->height);
   device.vk().vkCmdDispatchBase(commands, x, y, 0, across, down, 1);
-  record_compute_turn(device, commands, false);
+  if (kernel.turn_after) record_compute_turn(device, commands, false);
 }
 
 void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,

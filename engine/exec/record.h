@@ -27,6 +27,8 @@ struct KernelCommands {
   Rect part;                  ///< what is made of the target; whole groups of rows
   std::optional<Size> group;  ///< of a dispatch: the pixels that a workgroup makes
   VkImageLayout target_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  bool turn_before = true,
+       turn_after = true;   ///< of a dispatch: kernels that are drawn, or the caller, may stand there
   KernelBarriers barriers;  ///< that must come before it
   KernelBarriers after;     ///< and behind it
 };

@@ -20,14 +20,10 @@ VkPhysicalDeviceFeatures features_of(const VulkanFunctions& vk, VkPhysicalDevice
   return features.features;
 }
 
-/// What CPU devices are asked for besides: see stores_from_fragments.
+/// What all devices are asked for that have it: see stores_from_fragments and stores_few_channels.
 bool can_store_from_fragments(const VulkanFunctions& vk, VkPhysicalDevice device) {
-  VkPhysicalDeviceProperties properties{};
-  vk.vkGetPhysicalDeviceProperties(device, &properties);
-  return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && features_of(vk, device).fragmentStoresAndAtomics;
+  return features_of(vk, device).fragmentStoresAndAtomics;
 }
-
-/// What all devices are asked for that have it: see stores_few_channels.
 bool can_store_few_channels(const VulkanFunctions& vk, VkPhysicalDevice device) {
   return features_of(vk, device).shaderStorageImageExtendedFormats;
 }

@@ -115,7 +115,7 @@ class Device {
   const Presentation* presentation() const { return presentation_.get(); }
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   const ForcedWays& forced() const { return forced_; }
-  /// Fragment shaders may write buffers: on CPU devices that were opened here and can.
+  /// Fragment shaders may write buffers: on devices that were opened here and can.
   bool stores_from_fragments() const { return stores_from_fragments_; }
   /// Storage images may have formats of one and two channels beside R32F: on devices that were opened here and can.
   bool stores_few_channels() const { return stores_few_channels_; }

@@ -28,10 +28,26 @@ std::uint32_t bytes_per_pixel(VkFormat format) {
   }
 }
 
-bool supports(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags wanted) {
+namespace {
+
+VkFormatFeatureFlags features_for(VkImageUsageFlags usage) {
+  VkFormatFeatureFlags features = 0;
+  if (usage & VK_IMAGE_USAGE_SAMPLED_BIT) features |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+  if (usage & VK_IMAGE_USAGE_STORAGE_BIT) features |= VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+  if (usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) features |= VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+  if (usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) features |= VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  return features;
+}
+
+}  // namespace
+
+bool supports(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags wanted,
+              VkImageTiling tiling) {
   VkFormatProperties properties{};
   vk.vkGetPhysicalDeviceFormatProperties(device, format, &properties);
-  return (properties.optimalTilingFeatures & wanted) == wanted;
+  const VkFormatFeatureFlags has =
+      tiling == VK_IMAGE_TILING_LINEAR ? properties.linearTilingFeatures : properties.optimalTilingFeatures;
+  return (has & wanted) == wanted;
 }
 
 bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
@@ -55,7 +71,10 @@ Result<void> check_image(const Device& device, const ImageDesc& desc) {
   VkImageFormatProperties limits{};
   const VkResult result = device.vk().vkGetPhysicalDeviceImageFormatProperties(
       device.physical(), desc.format, VK_IMAGE_TYPE_2D, desc.tiling, desc.usage, 0, &limits);
-  if (result == VK_ERROR_FORMAT_NOT_SUPPORTED) return fail("the device does not support the format for this use");
+  // Some drivers make images that no view can be made of.
+  const bool viewed = supports(device.vk(), device.physical(), desc.format, features_for(desc.usage), desc.tiling);
+  if (result == VK_ERROR_FORMAT_NOT_SUPPORTED || (result == VK_SUCCESS && !viewed))
+    return fail("the device does not support the format for this use");
   if (result != VK_SUCCESS) return vulkan_error(result, desc.name);
   const auto max_width = std::min(limits.maxExtent.width, device.properties().limits.maxFramebufferWidth);
   const auto max_height = std::min(limits.maxExtent.height, device.properties().limits.maxFramebufferHeight);

@@ -33,7 +33,8 @@ inline constexpr std::array kFewChannels{VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_
 inline constexpr VkFormatFeatureFlags kDrawnAndSampled =
     VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
 /// Whether optimally tiled images of the format can be used so.
-bool supports(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags wanted);
+bool supports(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags wanted,
+              VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL);
 bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted);
 
 /// The layout of a new image: PREINITIALIZED for linear tiling, so that pixels written by the CPU stay; else UNDEFINED.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -172,6 +173,9 @@ VkInstance Instance::release(VkDebugUtilsMessengerEXT& messenger) {
 void destroy_instance(const VulkanFunctions& vk, VkInstance instance, VkDebugUtilsMessengerEXT messenger) {
   if (instance == VK_NULL_HANDLE) return;
   if (messenger != VK_NULL_HANDLE) vk.vkDestroyDebugUtilsMessengerEXT(instance, messenger, nullptr);
+  static std::atomic<VkInstance> stays = VK_NULL_HANDLE;
+  VkInstance none = VK_NULL_HANDLE;
+  if (stays.compare_exchange_strong(none, instance)) return;
   vk.vkDestroyInstance(instance, nullptr);
 }
 

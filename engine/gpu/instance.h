@@ -37,6 +37,9 @@ class Instance {
   std::shared_ptr<ValidationLog> log_;
 };
 
+/// The first one of a process stays, so that drivers stay loaded: each time that some (NVIDIA's) are loaded anew takes
+/// room for variables of threads that the C library does not get back; after some forty times they are not found any
+/// more.
 void destroy_instance(const VulkanFunctions& vk, VkInstance instance, VkDebugUtilsMessengerEXT messenger);
 
 }  // namespace afterglow

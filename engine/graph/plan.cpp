@@ -218,7 +218,7 @@ std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageI
   return std::nullopt;
 }
 
-Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
+Plan make_plan(const Graph& graph, const ExecutionConfig& config, bool stores_result) {
   Plan plan;
   const std::vector<bool> keep = passes_that_matter(graph), once = made_once(graph);
   Joiner joiner(graph, keep, once);
@@ -230,7 +230,11 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
   }
   plan.kernels = joiner.finish();
   cut_behind_samplers(graph, config, plan.kernels);
-  for (auto& kernel : plan.kernels) kernel.compute = runs_as_workgroups(graph, kernel, config);
+  for (auto& kernel : plan.kernels) {
+    kernel.workgroups = runs_as_workgroups(graph, kernel, config);
+    const bool may_store = !must_be_drawn(graph, kernel.output) || (stores_result && kernel.output == graph.result);
+    kernel.dispatched = kernel.workgroups || (config.dispatched && may_store);
+  }
   for (const auto& kernel : plan.kernels) plan.once.push_back(once[kernel.output]);
   find_lifetimes(graph, plan);
   return plan;

@@ -21,7 +21,8 @@ struct PlanKernel {
   std::vector<int> passes;
   std::string name;  ///< "glow.up[0]+glow.combine+curve"
   ImageId output = kNoImage;
-  bool compute = false;  ///< its anchor runs as workgroups, which store into the image; else it is drawn
+  bool workgroups = false;  ///< its anchor is a shader of workgroups
+  bool dispatched = false;  ///< it is a compute shader, which stores into the image; else it is drawn
 };
 
 struct Plan {
@@ -39,9 +40,9 @@ struct Plan {
   std::vector<bool> once;
 };
 
-/// Of `config` it reads `fusion`, `compute`, `rows` and `storage`. What compute kernels make is transient: neither the result nor kept by
-/// a history.
-Plan make_plan(const Graph& graph, const ExecutionConfig& config);
+/// Of `config` it reads `fusion`, `compute`, `dispatched`, `rows` and `storage`. What histories keep is drawn, and so
+/// is the result, unless kernels may store into it (`stores_result`).
+Plan make_plan(const Graph& graph, const ExecutionConfig& config, bool stores_result = false);
 
 /// Is input `input` of a pass read at the target's own pixel alone: the colour of a pixel pass, a pixel-wise input?
 bool reads_own_pixel(const Pass& pass, const PassInput& input);

@@ -21,6 +21,9 @@ namespace {
 
 constexpr std::size_t kMaxImages = 16;  ///< what every Vulkan device can bind to one stage
 
+/// Invocations of a workgroup where authors say nothing of workgroups.
+constexpr Size kOwnGroups{16, 8};
+
 constexpr std::string_view kHeader =
     "#version 460\n"
     "layout(push_constant) uniform ag_Push { ivec2 ag_target_size; ivec2 ag_source_size; };\n";
@@ -71,11 +74,13 @@ class Assembler {
     if (kernel_.filter && kernel_.sample)
       return Error{ErrorKind::other, "a kernel has one anchor stage: a filter or a sample"};
     if (kernel_.sample && kernel_.sample->shader) out_.workgroup = kernel_.sample->shader->interface.workgroup;
-    if (kernel_.config.rows < 1 || kernel_.config.rows > (out_.workgroup ? 1 : kMaxRows))
-      return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}",
-                                                 out_.workgroup ? 1 : kMaxRows, kernel_.config.rows)};
-    if (out_.workgroup && kernel_.target == KernelTarget::unorm8)
-      return Error{ErrorKind::other, "a compute shader makes no codes"};
+    authors_groups_ = out_.workgroup.has_value();
+    const int most_rows = authors_groups_ ? 1 : kMaxRows;
+    if (kernel_.config.rows < 1 || kernel_.config.rows > most_rows)
+      return Error{ErrorKind::other,
+                   fmt::format("an invocation makes 1 to {} rows, not {}", most_rows, kernel_.config.rows)};
+    if (kernel_.config.dispatched && !authors_groups_)
+      out_.workgroup = Workgroup{kOwnGroups, {kOwnGroups.width, kOwnGroups.height * kernel_.config.rows}};
     AFTERGLOW_CHECK(anchor());
     row_ += held_to(anchor_channels());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
@@ -214,7 +219,7 @@ class Assembler {
   void multiply() { row_ += fmt::format("  ag_color = vec4(ag_color.rgb * ag_cover{0}, ag_alpha{0});\n", divisions_); }
 
   Result<void> anchor() {
-    if (kernel_.sample) return add_stage(*kernel_.sample, out_.workgroup ? PassKind::compute : PassKind::sample);
+    if (kernel_.sample) return add_stage(*kernel_.sample, authors_groups_ ? PassKind::compute : PassKind::sample);
     const ImageRead read = add_image(-1, "source", "ag_image0", true);
     images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
     if (!kernel_.filter) {
@@ -241,7 +246,9 @@ class Assembler {
           "layout(local_size_x = {}, local_size_y = {}) in;\n"
           "layout(set = 0, binding = {}, {}) uniform restrict writeonly image2D ag_target;\n",
           size.width, size.height, out_.images.size() + 1,
-          format_word(kernel_.target_channels, kernel_.target == KernelTarget::float16));
+          kernel_.target == KernelTarget::unorm8
+              ? "rgba8"
+              : format_word(kernel_.target_channels, kernel_.target == KernelTarget::float16));
     }
     for (int row = 0; row < kernel_.config.rows; ++row)
       out += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
@@ -250,8 +257,12 @@ class Assembler {
 
   /// The result of each row; {0} in `value` is its number.
   void store(const std::string& value) {
-    every_row(out_.workgroup ? "if (ag_makes) imageStore(ag_target, ag_pixel{0}, " + value + ");"
-                             : "ag_result{0} = " + value + ";");
+    if (!out_.workgroup)
+      every_row("ag_result{0} = " + value + ";");
+    else if (kernel_.config.rows == 1)
+      every_row("if (ag_makes) imageStore(ag_target, ag_pixel{0}, " + value + ");");
+    else
+      every_row("if (ag_pixel.y + {0} < ag_target_size.y) imageStore(ag_target, ag_pixel{0}, " + value + ");");
   }
 
   /// Of a compute shader: the pixel of the invocation, whether it is one of the target's that the workgroup makes, and
@@ -268,9 +279,20 @@ class Assembler {
 
   /// Declares the pixels of the invocation. Those below the target's last row are made like it and land in padding.
   std::string pixels() const {
-    if (out_.workgroup) return invocation();
-    if (kernel_.config.rows == 1) return "  ivec2 ag_pixel0 = ivec2(gl_FragCoord.xy);\n";
-    std::string out = fmt::format("  ivec2 ag_pixel = ivec2(gl_FragCoord.xy) * ivec2(1, {});\n", kernel_.config.rows);
+    if (authors_groups_) return invocation();
+    const std::string place = out_.workgroup ? fmt::format(
+                                                   "ivec2(gl_WorkGroupID.xy) * ivec2({}, {}) + "
+                                                   "ivec2(gl_LocalInvocationID.xy)",
+                                                   kOwnGroups.width, kOwnGroups.height)
+                                             : "ivec2(gl_FragCoord.xy)";
+    // Nobody waits for the others of a group: those beside the target are done.
+    const std::string within =
+        !out_.workgroup ? ""
+        : kernel_.config.rows == 1
+            ? "  bool ag_makes = all(lessThan(ag_pixel0, ag_target_size));\n  if (!ag_makes) return;\n"
+            : "  if (any(greaterThanEqual(ag_pixel, ag_target_size))) return;\n";
+    if (kernel_.config.rows == 1) return "  ivec2 ag_pixel0 = " + place + ";\n" + within;
+    std::string out = fmt::format("  ivec2 ag_pixel = ({}) * ivec2(1, {});\n", place, kernel_.config.rows) + within;
     for (int row = 0; row < kernel_.config.rows; ++row)
       out +=
           fmt::format("  ivec2 ag_pixel{0} = ivec2(ag_pixel.x, min(ag_pixel.y + {0}, ag_target_size.y - 1));\n", row);
@@ -357,7 +379,7 @@ class Assembler {
 
   /// The colour of a pixel that may be done without the shader's entry.
   void sample_rest(const std::string& done, const std::string& entry) {
-    out_.two_draws = kernel_.config.two_draws && kernel_.config.rows == 1;
+    out_.two_draws = kernel_.config.two_draws && kernel_.config.rows == 1 && !out_.workgroup;
     every_row("vec4 ag_color{0} = vec4(0.0);");
     if (!out_.two_draws) {
       every_row("if (!" + done + "(ag_pixel{0}, ag_color{0})) ag_color{0} = " + entry + "(ag_pixel{0});");
@@ -397,6 +419,7 @@ class Assembler {
 
   const KernelDesc& kernel_;
   AssembledKernel out_;
+  bool authors_groups_ = false;  ///< the anchor is a shader of workgroups
   KernelTexts texts_;
   std::string block_, images_, readers_;
   std::string head_function_;                         ///< what finds one row's colour where rows share nothing

@@ -13,7 +13,7 @@
 #include "core/cache_folder.h"
 #include "core/file.h"
 #include "shader/cpu/defeat_uniform_inlining.h"
-#include "shader/cpu/guard_loops.h"
+#include "shader/guard_loops.h"
 #include "shader/cpu/interleave.h"
 #include "shader/cpu/merge_equal.h"
 #include "shader/give_values.h"

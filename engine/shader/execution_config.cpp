@@ -28,6 +28,7 @@ constexpr Word kWords[] = {
     {"hardware-filter", [](ExecutionConfig& c) { c.hardware_filter = true; }},
     {"storage-reads", [](ExecutionConfig& c) { c.storage_reads = true; }},
     {"compute", [](ExecutionConfig& c) { c.compute = true; }},
+    {"dispatched", [](ExecutionConfig& c) { c.dispatched = true; }},
     {"four-channels", [](ExecutionConfig& c) { c.four_channels = true; }},
     {"unshared", [](ExecutionConfig& c) { c.share_memory = false; }},
     {"plain16f", [](ExecutionConfig& c) { c = kPlain16f; }},
@@ -59,6 +60,7 @@ std::string execution_name(const ExecutionConfig& config) {
   if (config.hardware_filter) name += " hardware-filter";
   if (config.storage_reads) name += " storage-reads";
   if (config.compute) name += " compute";
+  if (config.dispatched) name += " dispatched";
   if (config.four_channels) name += " four-channels";
   if (!config.share_memory) name += " unshared";
   if (config.rows > 1) name += fmt::format(" {}{}", kRows, config.rows);

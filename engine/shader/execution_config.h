@@ -33,6 +33,9 @@ struct ExecutionConfig {
   bool storage_reads = false;
   /// Passes that have a second way, by a compute shader, take it: faster where many invocations run at once.
   bool compute = false;
+  /// Kernels are compute shaders, which store their pixels, where nothing keeps them from it; else they are drawn.
+  /// Faster on GPUs that have more of them than of what draws, such as those of data centres.
+  bool dispatched = false;
   /// Images that have one or two channels (graph/graph.h) are stored in four all the same. Devices that cannot draw or
   /// read the formats of fewer do so anyway.
   bool four_channels = false;
@@ -43,11 +46,13 @@ struct ExecutionConfig {
   /// The driver is kept from compiling a kernel again for each value of its parameters, as CPU drivers do. Costs an
   /// instruction a read. It has no word: exec/cpu decides it by the device.
   bool defeat_uniform_inlining = false;
-  /// Loops that may never end are ended, with an error (kernel.h, CompiledKernel::loops). Likewise without a word.
+  /// Loops that may never end are ended, with an error (kernel.h, CompiledKernel::loops). Without a word: wherever the
+  /// device can.
   bool guard_loops = false;
   /// Sample shaders that tell where they are done (kDoneFunction) are drawn twice: what is done, then the rest. CPU
   /// drivers take all pixels through both sides of a branch, but leave out groups of pixels that fail a depth test.
-  /// Likewise without a word.
+  /// It has no word:
+  /// exec/cpu decides it.
   bool two_draws = false;
   /// Parameters come to fragment shaders through the vertex shader: CPU drivers read a uniform block for each pixel by
   /// itself. Likewise without a word.

@@ -24,6 +24,8 @@ const std::vector<ExecutionConfig>& other_choices() {
       {.fusion = Fusion::all, .storage_reads = true, .rows = 8},
       {.fusion = Fusion::filters, .storage_reads = true, .rows = 4},
       {.fusion = Fusion::all, .compute = true},
+      {.fusion = Fusion::all, .dispatched = true},
+      {.fusion = Fusion::all, .storage_reads = true, .compute = true, .dispatched = true, .rows = 4},
   };
   return all;
 }

@@ -21,12 +21,12 @@ vec2 area(float x0, float y0, float x1, float y1, float x) {
   if (to <= from) return vec2(0.0);
   float slope = (y1 - y0) / (x1 - x0);
   float a = y0 + slope * (from - x0), b = y0 + slope * (to - x0);
-   if (a * b >= 0.0) {
+  if (a * b >= 0.0) {
     float both = 0.5 * (a + b) * (to - from);
     return both > 0.0 ? vec2(both, 0.0) : vec2(0.0, -both);
   }
   float meets = a / (a - b) * (to - from);
-  float first = 0.5 * abs(a) * meets, second = 0.5 * abs(b) * (to - from - meets);
+  float first = 0.5 * abs(a) * meets, second = 0.5 * abs(b) * max(to - from - meets, 0.0);  // divisions may be rounded up
   return a > 0.0 ? vec2(first, second) : vec2(second, first);
 }
 

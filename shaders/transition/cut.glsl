@@ -13,14 +13,20 @@ uniform vec3 plain;
 uniform vec2 direction, hand, center, grain;
 uniform int count, seed;
 
+const float kNoDistance = 1e-6;  // from the centre, in sizes of the picture: it has no direction
+
 const int kDissolve = 0, kFade = 1, kWipe = 2, kIris = 3, kClock = 4, kBlinds = 5, kScatter = 6, kPush = 7;
 
 vec3 other_at(ivec2 at, float alpha) { return has_other ? fetch(other, at).rgb : clamp(plain * alpha, -kMaxLight, kMaxLight); }
 
 vec2 share_of(ivec2 at) { return (vec2(at) + 0.5) / vec2(target_size()); }
 
-// From the centre of iris and clock, in heights of the picture.
-vec2 from_center(ivec2 at) { return (share_of(at) - center) * vec2(aspect, 1.0); }
+// From the centre of iris and clock, in heights of the picture. A pixel in the middle is at 0, however divisions are rounded.
+vec2 from_center(ivec2 at) {
+  vec2 size = vec2(target_size());
+  vec2 from = (vec2(2 * at + 1) - size) / (2.0 * size) - (center - 0.5);
+  return dot(from, from) < kNoDistance * kNoDistance ? vec2(0.0) : from * vec2(aspect, 1.0);
+}
 
 // Turns that a place lies behind a direction, clockwise: -0.5 to 0.5.
 float turns_behind(vec2 from, vec2 way) { return atan(way.x * from.y - way.y * from.x, dot(way, from)) / 6.28318530718; }

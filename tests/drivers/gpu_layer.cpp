@@ -370,8 +370,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
                                                                       VkImageType type, VkImageTiling tiling,
                                                                       VkImageUsageFlags usage, VkImageCreateFlags flags,
                                                                       VkImageFormatProperties* out) {
-  if (needs_optimal(tiling, usage) || (lacks(format) && needs_optimal(VK_IMAGE_TILING_LINEAR, usage)))
-    return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  // Linear images are not refused, as NVIDIA's driver does not: that none can be drawn to, their features say alone.
+  if (lacks(format) && needs_optimal(VK_IMAGE_TILING_LINEAR, usage)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkResult result =
       next.GetPhysicalDeviceImageFormatProperties(physical, format, type, tiling, usage, flags, out);
   if (result == VK_SUCCESS) limit_sides(*out);
@@ -380,9 +380,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysicalDevice physical,
                                                                        const VkPhysicalDeviceImageFormatInfo2* info,
                                                                        VkImageFormatProperties2* out) {
-  if (needs_optimal(info->tiling, info->usage) ||
-      (lacks(info->format) && needs_optimal(VK_IMAGE_TILING_LINEAR, info->usage)))
-    return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  if (lacks(info->format) && needs_optimal(VK_IMAGE_TILING_LINEAR, info->usage)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkResult result = next.GetPhysicalDeviceImageFormatProperties2(physical, info, out);
   if (result == VK_SUCCESS) limit_sides(out->imageFormatProperties);
   return result;

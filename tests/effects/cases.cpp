@@ -21,6 +21,10 @@ void check(const Scene& scene, const EffectCase& one, const Tolerances& toleranc
     EXPECT_TRUE(agrees(computed.result, expected, tolerances.full, kRgba)) << "by workgroups";
   }
   if (half_too) {
+    const Made dispatched = run_stack(one.entries, scene, Way::dispatched);
+    EXPECT_TRUE(agrees(dispatched.result, from_floats(plain.result.data(), plain.size, 4), tolerances.fused, kRgba))
+        << "dispatched";
+    EXPECT_GT(dispatched.dispatches, 0u) << "dispatched";
     DoubleImage held = expected;
     for (auto& p : held.pixels) p = glm::min(p, Rgba(65504));
     const Made half = run_stack(one.entries, scene, Way::fused_half);

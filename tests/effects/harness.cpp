@@ -81,14 +81,16 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
   const ProgramOptions options{.config = {.storage = way == Way::fused_half ? Storage::fp16 : Storage::fp32,
                                           .storage_reads = way != Way::plain,
                                           .compute = way == Way::computed,
+                                          .dispatched = way == Way::dispatched,
                                           .rows = way == Way::plain ? 1 : kMaxRows},
                                .reference = way == Way::plain,
                                .inputs_are_storage = way != Way::plain,
                                .worth = {0, 0},
-                               .result_by_rows = way != Way::plain};
+                               .result_by_rows = way != Way::plain,
+                               .result_stored = true};
   auto program = need(Program::create(*harness.device, shaders, harness.compiler, graph, options));
   made.kernels = program->plan().kernels.size();
-  for (const auto& kernel : program->plan().kernels) made.dispatches += kernel.compute;
+  for (const auto& kernel : program->plan().kernels) made.dispatches += kernel.dispatched;
   auto runner = need(FrameRunner::create(*harness.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};

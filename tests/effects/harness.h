@@ -38,7 +38,7 @@ struct Made {
 
 /// `plain`: every pass on its own in full floats, all images kept. `fused`: as users run it. `computed`: the same,
 /// with compute shaders for passes that have them.
-enum class Way { plain, fused, fused_half, computed };
+enum class Way { plain, fused, fused_half, computed, dispatched };
 
 /// Runs the stack `{ ENTRIES }`, Lua text. Failures of any step fail the test. `length_scale`: see BuildContext.
 Made run_stack(const std::string& entries, const Scene& scene, Way way, double length_scale = 1);

@@ -10,7 +10,7 @@
 #include "fuzz.h"
 #include "random_shader.h"
 #include "shader/cpu/defeat_uniform_inlining.h"
-#include "shader/cpu/guard_loops.h"
+#include "shader/guard_loops.h"
 #include "shader/cpu/interleave.h"
 #include "shader/cpu/merge_equal.h"
 #include "shader/give_values.h"

@@ -4,7 +4,7 @@
 namespace afterglow {
 
 void fit_to_cpu_driver(ExecutionConfig& config) {
-  config.defeat_uniform_inlining = config.guard_loops = config.two_draws = config.flat_parameters = true;
+  config.defeat_uniform_inlining = config.two_draws = config.flat_parameters = true;
 }
 
 }  // namespace afterglow

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "exec/barriers.h"
 #include "exec/convert.h"
 #include "exec/host_input.h"
 #include "exec/staging.h"
@@ -54,10 +53,12 @@ Result<DevicePicture> DevicePicture::create(const Device& device, const Picture&
     AFTERGLOW_TRY(out.inputs_[name],
                   upload_image(device, image, input_format(name, image.channels, kind.source), kUsage, kRest));
   }
-  const ImageDesc result{.name = "result",
-                         .size = picture.color.size(),
-                         .format = kind.result,
-                         .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
+  const ImageDesc result{
+      .name = "result",
+      .size = picture.color.size(),
+      .format = kind.result,
+      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | (kind.stored ? VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT} : 0)};
+  if (kind.stored) out.writing_ = kStored;
   AFTERGLOW_TRY(out.result_, FrameImage::create(device, result,
                                                 device.maps_images() ? HostAccess::read : HostAccess::none, kind.rows));
   return out;
@@ -90,14 +91,11 @@ std::vector<VkImageMemoryBarrier2> DevicePicture::turned(VkImageLayout from, VkI
 void DevicePicture::before(VkCommandBuffer commands, VkImageLayout input_layout) const {
   std::vector<VkImage> results{result_.image.get()};
   for (int k = 0; k < result_.rows.rows(); ++k) results.push_back(result_.rows.image(k));
-  const VkImageLayout drawn =
-      result_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  const VkImageLayout written = result_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : writing_.layout;
   std::vector<VkImageMemoryBarrier2> barriers = turned(kRest, input_layout);
   for (const VkImage image : results)
-    barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                                     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawn));
+    barriers.push_back(image_barrier(image, writing_.stage, writing_.access, VK_IMAGE_LAYOUT_UNDEFINED, writing_.stage,
+                                     writing_.access, written));
   record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 

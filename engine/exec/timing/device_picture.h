@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "exec/barriers.h"
 #include "exec/frame_image.h"
 #include "exec/program.h"
 #include "image/picture.h"
@@ -17,7 +18,8 @@ namespace afterglow {
 struct PictureKind {
   VkFormat source = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< or RGBA16F
   VkFormat result = VK_FORMAT_R32G32B32A32_SFLOAT;
-  int rows = 1;  ///< targets of the result (Program::result_rows)
+  int rows = 1;         ///< targets of the result (Program::result_rows)
+  bool stored = false;  ///< the result is stored (Program::stores_result)
   friend auto operator<=>(const PictureKind&, const PictureKind&) = default;
 };
 
@@ -41,6 +43,7 @@ class DevicePicture {
   const Device* device_ = nullptr;
   std::map<std::string, FrameImage> inputs_;
   FrameImage result_;
+  Writing writing_;
 };
 
 /// A new image on the device with the pixels of `image`, in `layout`. Errors: device.

@@ -45,6 +45,18 @@ std::unique_ptr<Device> validated_device() {
   return device ? std::move(*device) : nullptr;
 }
 
+/// Programs that open and close devices all day load their drivers once.
+TEST(DeviceTest, DriversStayLoadedBehindTheLastDevice) {
+  const auto driver = [] {
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);)
+      if (line.find("libvulkan_") != std::string::npos || line.find("nvidia") != std::string::npos) return true;
+    return false;
+  };
+  { ASSERT_TRUE(validated_device()); }
+  EXPECT_TRUE(driver());
+}
+
 TEST(DeviceList, ListsAtLeastOneUsableDevice) {
   const auto devices = list_devices();
   ASSERT_TRUE(devices) << devices.error().text();

@@ -18,13 +18,14 @@ TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
   int read = 0;
   for (const auto fusion : {Fusion::none, Fusion::filters, Fusion::all})
     for (const auto storage : {Storage::fp32, Storage::fp16})
-      for (int bits = 0; bits < 32; ++bits)
+      for (int bits = 0; bits < 64; ++bits)
         for (const int rows : {1, 2, 8}) {
           const ExecutionConfig choice{.fusion = fusion,
                                        .storage = storage,
                                        .hardware_filter = (bits & 1) != 0,
                                        .storage_reads = (bits & 2) != 0,
                                        .compute = (bits & 4) != 0,
+                                       .dispatched = (bits & 32) != 0,
                                        .four_channels = (bits & 8) != 0,
                                        .share_memory = (bits & 16) != 0,
                                        .rows = rows};
@@ -33,7 +34,7 @@ TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
           EXPECT_EQ(*parsed, choice) << execution_name(choice);
           ++read;
         }
-  EXPECT_EQ(read, 576);
+  EXPECT_EQ(read, 1152);
 }
 
 TEST(ExecutionConfig, WordsMayComeInAnyOrderAndWithPlus) {

@@ -21,6 +21,8 @@ class LoopWatch {
 
   /// To bind; nothing for a kernel without guarded loops.
   std::optional<VkDescriptorBufferInfo> word(std::size_t kernel) const;
+  /// Makes what kernels wrote known to the CPU: behind the last of them.
+  void record(const Device& device, VkCommandBuffer commands) const;
   /// Notes a loop that has run away since it was called last, and lets all loops turn again. To be called when a run is
   /// over.
   void look();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "exec/cpu/loop_watch.h"
+#include "exec/loop_watch.h"
 
 #include <fmt/format.h>
 
@@ -31,6 +31,20 @@ std::optional<VkDescriptorBufferInfo> LoopWatch::word(std::size_t kernel) const 
   return VkDescriptorBufferInfo{buffer_.get(), kernels_[kernel].offset, sizeof(std::uint32_t)};
 }
 
+void LoopWatch::record(const Device& device, VkCommandBuffer commands) const {
+  if (buffer_.size() == 0) return;
+  const VkMemoryBarrier2 told{
+      .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+      .pNext = nullptr,
+      .srcStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+      .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+      .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+      .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+  const VkDependencyInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &told};
+  device.vk().vkCmdPipelineBarrier2(commands, &info);
+}
+
 void LoopWatch::look() {
   if (buffer_.size() == 0) return;
   buffer_.memory().invalidate();
@@ -58,7 +72,7 @@ Error LoopWatch::error() const {
     error.file = kernel.loops[told_ - 1].file;
     error.line = kernel.loops[told_ - 1].line;
   }
-  error.allowed = fmt::format("at most {} turns of all loops together on CPU devices", kMaxLoopTurns);
+  error.allowed = fmt::format("at most {} turns of all loops together", kMaxLoopTurns);
   return error;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shader/cpu/guard_loops.h"
+#include "shader/guard_loops.h"
 
 #include <algorithm>
 #include <map>
