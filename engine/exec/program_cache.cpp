@@ -140,7 +140,7 @@ Result<void> ProgramCache::State::fit_histories() {
   const bool half = storage() == Storage::fp16 && !options.reference;
   return histories->fit(device, entries.front().work.graph,
                         {.half = half,
-                         .storage = options.config.storage_reads,
+                         .storage = options.config.storage_reads || options.config.dispatched,
                          .four_channels = options.config.four_channels ||
                                           !holds_few_channels(device, entries.front().work.graph, options.config),
                          .max_memory = options.max_memory});

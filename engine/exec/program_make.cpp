@@ -151,7 +151,7 @@ Result<void> Program::State::settle_rows(KernelCompiler& compiler, std::vector<K
 /// How many rows kernels really make at a time, and the images between them, unless those come from a pool.
 Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   for (std::size_t i = 0; i < descs.size(); ++i)
-    if (history_of_next(graph, plan.kernels[i].output)) descs[i].config.rows = 1;
+    if (history_of_next(graph, plan.kernels[i].output) && !descs[i].config.dispatched) descs[i].config.rows = 1;
   // A compute shader stores its rows one by one.
   const auto by_rows = [](const KernelDesc& desc) { return desc.config.rows > 1 && !desc.config.dispatched; };
   linear = std::ranges::any_of(descs, by_rows) && can_be_linear();
@@ -264,7 +264,7 @@ Result<void> Program::State::make_histories() {
   histories = std::make_shared<Histories>();
   return histories->fit(device, graph,
                         {.half = options.config.storage == Storage::fp16,
-                         .storage = options.config.storage_reads,
+                         .storage = options.config.storage_reads || options.config.dispatched,
                          .four_channels = options.config.four_channels,
                          .max_memory = options.max_memory - std::min(options.max_memory, arena.memory().arena)});
 }

@@ -11,12 +11,13 @@ namespace {
 
 /// An image that is filled with one value and read from here on. Frames before this one may have drawn and read it.
 VkImageMemoryBarrier2 before_filling(VkImage image) {
-  return image_barrier(image,
-                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-                           VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_TRANSFER_BIT,
-                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                       VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  return image_barrier(
+      image,
+      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+          VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+      VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
 }
 
 VkImageMemoryBarrier2 after_filling(VkImage image, VkImageLayout layout) {
@@ -57,7 +58,7 @@ void Program::State::make_commands() {
         targets = {target->view()};
       barriers[i].memory = linear && i > 0;
       KernelBarriers after;
-      if (history) after.images = {before_reading(history->get(), history_layout())};
+      if (history) after.images = {before_reading(history->get(), history_layout(), writing_of(plan.kernels[i]))};
       commands.push_back(
           {.name = plan.kernels[i].name,
            .pipeline = pipelines.pipeline(compiled.index[i]),

@@ -232,7 +232,7 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config, bool stores_re
   cut_behind_samplers(graph, config, plan.kernels);
   for (auto& kernel : plan.kernels) {
     kernel.workgroups = runs_as_workgroups(graph, kernel, config);
-    const bool may_store = !must_be_drawn(graph, kernel.output) || (stores_result && kernel.output == graph.result);
+    const bool may_store = stores_result || kernel.output != graph.result;
     kernel.dispatched = kernel.workgroups || (config.dispatched && may_store);
   }
   for (const auto& kernel : plan.kernels) plan.once.push_back(once[kernel.output]);

@@ -40,8 +40,9 @@ struct Plan {
   std::vector<bool> once;
 };
 
-/// Of `config` it reads `fusion`, `compute`, `dispatched`, `rows` and `storage`. What histories keep is drawn, and so
-/// is the result, unless kernels may store into it (`stores_result`).
+/// Of `config` it reads `fusion`, `compute`, `dispatched`, `rows` and `storage`. Shaders of workgroups make neither the
+/// result nor what histories keep; other kernels are dispatched for all but a result that may not be stored to
+/// (`stores_result`).
 Plan make_plan(const Graph& graph, const ExecutionConfig& config, bool stores_result = false);
 
 /// Is input `input` of a pass read at the target's own pixel alone: the colour of a pixel pass, a pixel-wise input?

@@ -8,8 +8,10 @@
 vec3 soft_knee_threshold(vec3 c, vec4 knee) {
   float b = brightest(c);
   float s = clamp(b + knee.y, 0.0, knee.z);
-  float contribution = max(s * (s * knee.w), b - knee.x);
-  return c * (contribution / max(b, 1e-5));
+  precise float share = s * knee.w;  // in this order, whatever a driver would rather do first
+  precise float contribution = max(s * share, b - knee.x);
+  precise float weight = contribution / max(b, 1e-5);
+  return c * weight;
 }
 
 /// The colour as if its brightest channel were at most `most`.

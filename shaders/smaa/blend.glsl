@@ -12,8 +12,9 @@ vec4 sample_at(ivec2 pixel) {
   float below = pixel.y < last.y ? fetch(weights, pixel + ivec2(0, 1)).g : 0.0;
   float beside = pixel.x < last.x ? fetch(weights, pixel + ivec2(1, 0)).a : 0.0;
   float above = own.r, left = own.b;
-  if (above + below + left + beside <= 0.0) return color;
-  bool level = max(left, beside) > max(above, below) + 1e-5;  // where both are the same, rounding must not decide
+  const float kNone = 1e-5;
+  if (max(max(above, below), max(left, beside)) <= kNone) return color;  // what rounding leaves of nothing
+  bool level = max(left, beside) > max(above, below) + kNone;  // where both are the same, rounding must not decide
   ivec2 by = level ? ivec2(1, 0) : ivec2(0, 1);
   float ahead = level ? beside : below, behind = level ? left : above;
   float sum = ahead + behind;

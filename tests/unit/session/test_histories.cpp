@@ -107,12 +107,14 @@ class HistoriesOfFrames : public testing::Test {
 };
 
 TEST_F(HistoriesOfFrames, AFrameReadsWhatTheOneBeforeItMade) {
-  StackOptions plain, kept, reference, half, rows;
+  StackOptions plain, kept, reference, half, rows, dispatched, all;
   kept.keep_images = true;
   reference.reference = true;
   half.choice = ExecutionConfig{.storage = Storage::fp16};
   rows.choice = ExecutionConfig{.storage_reads = true, .rows = 4};
-  for (const auto& options : {plain, kept, reference, half, rows}) {
+  dispatched.choice = ExecutionConfig{.dispatched = true};
+  all.choice = ExecutionConfig{.storage = Storage::fp16, .storage_reads = true, .dispatched = true, .rows = 4};
+  for (const auto& options : {plain, kept, reference, half, rows, dispatched, all}) {
     const auto session = open(options);
     EXPECT_EQ(run(*session, 1, 1), 9);  // 16 / 2 + 1
     EXPECT_EQ(run(*session, 2, 1), 5.5f) << "the same picture again, in another frame";

@@ -162,7 +162,7 @@ TEST_F(LiveReuse, LinearImagesAndHalvesToo) {
     pixels_of(*session_);
     const Program& program = *live().stack()->program();
     const auto between = program.transient(program.plan().kernels[0].output);
-    EXPECT_EQ(between->layout == VK_IMAGE_LAYOUT_GENERAL, choice.rows > 1);
+    EXPECT_EQ(between->layout == VK_IMAGE_LAYOUT_GENERAL, choice.rows > 1 && device_->maps_images());
     write("shaders/t/lib.glsl",
           fmt::format("vec3 tinted(vec3 c, float gain) {{ return c * gain + {}.0; }}\n", choice.rows));
     live().settle();
