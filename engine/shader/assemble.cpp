@@ -257,12 +257,11 @@ class Assembler {
 
   /// The result of each row; {0} in `value` is its number.
   void store(const std::string& value) {
-    if (!out_.workgroup)
-      every_row("ag_result{0} = " + value + ";");
-    else if (kernel_.config.rows == 1)
-      every_row("if (ag_makes) imageStore(ag_target, ag_pixel{0}, " + value + ");");
-    else
-      every_row("if (ag_pixel.y + {0} < ag_target_size.y) imageStore(ag_target, ag_pixel{0}, " + value + ");");
+    if (!out_.workgroup) return every_row("ag_result{0} = " + value + ";");
+    const char* where = authors_groups_            ? "if (ag_makes) "
+                        : kernel_.config.rows == 1 ? ""
+                                                   : "if (ag_pixel.y + {0} < ag_target_size.y) ";
+    every_row(where + ("imageStore(ag_target, ag_pixel{0}, " + value + ");"));
   }
 
   /// Of a compute shader: the pixel of the invocation, whether it is one of the target's that the workgroup makes, and
@@ -277,22 +276,21 @@ class Assembler {
         shared.empty() ? "" : shared + "  barrier();\n", pixels.width - 1, pixels.height - 1);
   }
 
-  /// Declares the pixels of the invocation. Those below the target's last row are made like it and land in padding.
+  /// Declares the pixels of the invocation. Those below the target's last row are made like it, and land in padding or
+  /// nowhere.
   std::string pixels() const {
     if (authors_groups_) return invocation();
-    const std::string place = out_.workgroup ? fmt::format(
-                                                   "ivec2(gl_WorkGroupID.xy) * ivec2({}, {}) + "
-                                                   "ivec2(gl_LocalInvocationID.xy)",
-                                                   kOwnGroups.width, kOwnGroups.height)
-                                             : "ivec2(gl_FragCoord.xy)";
-    // Nobody waits for the others of a group: those beside the target are done.
-    const std::string within =
-        !out_.workgroup ? ""
-        : kernel_.config.rows == 1
-            ? "  bool ag_makes = all(lessThan(ag_pixel0, ag_target_size));\n  if (!ag_makes) return;\n"
-            : "  if (any(greaterThanEqual(ag_pixel, ag_target_size))) return;\n";
-    if (kernel_.config.rows == 1) return "  ivec2 ag_pixel0 = " + place + ";\n" + within;
-    std::string out = fmt::format("  ivec2 ag_pixel = ({}) * ivec2(1, {});\n", place, kernel_.config.rows) + within;
+    const bool one = kernel_.config.rows == 1;
+    const std::string first = one ? "ag_pixel0" : "ag_pixel";
+    std::string place = "ivec2(gl_FragCoord.xy)", leave;
+    if (out_.workgroup) {
+      place = fmt::format("(ivec2(gl_WorkGroupID.xy) * ivec2({}, {}) + ivec2(gl_LocalInvocationID.xy))",
+                          kOwnGroups.width, kOwnGroups.height);
+      // Nobody waits for those beside the target.
+      leave = fmt::format("  if (any(greaterThanEqual({}, ag_target_size))) return;\n", first);
+    }
+    if (one) return "  ivec2 ag_pixel0 = " + place + ";\n" + leave;
+    std::string out = fmt::format("  ivec2 ag_pixel = {} * ivec2(1, {});\n{}", place, kernel_.config.rows, leave);
     for (int row = 0; row < kernel_.config.rows; ++row)
       out +=
           fmt::format("  ivec2 ag_pixel{0} = ivec2(ag_pixel.x, min(ag_pixel.y + {0}, ag_target_size.y - 1));\n", row);
