@@ -45,7 +45,10 @@ TEST(Sandbox, WhatIsNotThereSaysWhy) {
   EXPECT_EQ(run_statements("local x = math.random()"),
             "preset.lua:1: error: there is no math.random here: every run must give the same pictures; make numbers of "
             "t.frame, g.frame or a setting");
-  EXPECT_EQ(run_statements("nobody()"), "preset.lua:1: error: attempt to call a nil value (global 'nobody')");
+  EXPECT_EQ(run_statements("nobody()"),
+            "preset.lua:1: error: attempt to call a nil value (global 'nobody'); allowed: functions that are defined "
+            "before, and "
+            "those of the library: fx.stack, fx.bloom");
 }
 
 TEST(Sandbox, PrecompiledScriptsAreRefused) {
