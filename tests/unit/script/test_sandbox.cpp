@@ -48,7 +48,7 @@ TEST(Sandbox, WhatIsNotThereSaysWhy) {
   EXPECT_EQ(run_statements("nobody()"),
             "preset.lua:1: error: attempt to call a nil value (global 'nobody'); allowed: functions that are defined "
             "before, and "
-            "those of the library: fx.stack, fx.bloom");
+            "those of the library, like fx.stack");
 }
 
 TEST(Sandbox, PrecompiledScriptsAreRefused) {
