@@ -37,9 +37,8 @@ class Instance {
   std::shared_ptr<ValidationLog> log_;
 };
 
-/// The first one of a process stays, so that drivers stay loaded: each time that some (NVIDIA's) are loaded anew takes
-/// room for variables of threads that the C library does not get back; after some forty times they are not found any
-/// more.
+/// The first one of a process stays, so that drivers stay loaded: NVIDIA's, loaded anew each time, was not found any
+/// more after some forty times (as it seems, for want of room for variables of threads).
 void destroy_instance(const VulkanFunctions& vk, VkInstance instance, VkDebugUtilsMessengerEXT messenger);
 
 }  // namespace afterglow
