@@ -33,16 +33,8 @@ std::optional<VkDescriptorBufferInfo> LoopWatch::word(std::size_t kernel) const 
 
 void LoopWatch::record(const Device& device, VkCommandBuffer commands) const {
   if (buffer_.size() == 0) return;
-  const VkMemoryBarrier2 told{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-      .pNext = nullptr,
-      .srcStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-      .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-      .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-      .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-  const VkDependencyInfo info{
-      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &told};
-  device.vk().vkCmdPipelineBarrier2(commands, &info);
+  record_to_host(device, commands, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                 VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
 void LoopWatch::look() {

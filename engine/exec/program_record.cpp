@@ -98,8 +98,10 @@ void Program::State::begin_recording(VkCommandBuffer commands) const {
   }
 }
 
+/// Of a kernel that is recorded by itself: others than in a whole run may stand beside it.
 KernelCommands Program::State::commands_of(std::size_t kernel) const {
   KernelCommands one = kernels[static_cast<std::size_t>(parity())][kernel];
+  one.turn_before = one.turn_after = true;
   if (begins_anew()) one.set = descriptors.set(set_index(kFirst, kernel));
   return one;
 }
@@ -107,7 +109,6 @@ KernelCommands Program::State::commands_of(std::size_t kernel) const {
 void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const {
   KernelCommands one = commands_of(kernel);
   one.barriers = std::move(barriers);
-  one.turn_before = one.turn_after = true;  // others may stand beside it
   record_kernel(device, commands, one, result);
 }
 
@@ -133,7 +134,6 @@ void Program::record_a_pixel_each(VkCommandBuffer commands, bool backwards) {
   for (std::size_t turn = 0; turn < count; ++turn) {
     KernelCommands one = s.commands_of(backwards && s.linear ? count - 1 - turn : turn);
     one.part = {0, 0, 1, 1};
-    one.turn_before = one.turn_after = true;
     record_kernel(s.device, commands, one, s.result);
   }
 }

@@ -128,19 +128,11 @@ Result<void> Staging::submit_download(Band& band, const StagedImage& image, VkIm
     const VkBufferImageCopy region = copy_of(image, first, rows);
     device_->vk().vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(),
                                          1, &region);
-    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = kTransfer,
-                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    record_to_host(*device_, commands, kTransfer, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    if (!is_last) return;
     const auto end = image_barrier(image.image, kTransfer, 0, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader, 0, layout);
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .memoryBarrierCount = 1,
-                                      .pMemoryBarriers = &to_host,
-                                      .imageMemoryBarrierCount = is_last ? 1u : 0u,
-                                      .pImageMemoryBarriers = &end};
-    device_->vk().vkCmdPipelineBarrier2(commands, &dependency);
+    record_barriers(*device_, commands, &end, 1);
   }));
   band.first_row = first;
   band.rows = rows;

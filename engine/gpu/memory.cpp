@@ -127,4 +127,16 @@ Result<Buffer> Buffer::create(const Device& device, VkDeviceSize size, VkBufferU
   return out;
 }
 
+void record_to_host(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 stage,
+                    VkAccessFlags2 access) {
+  const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                 .srcStageMask = stage,
+                                 .srcAccessMask = access,
+                                 .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                 .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+  const VkDependencyInfo dependency{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
+  device.vk().vkCmdPipelineBarrier2(commands, &dependency);
+}
+
 }  // namespace afterglow

@@ -61,4 +61,7 @@ class Buffer {
   VkDeviceSize size_ = 0;
 };
 
+/// Records that what was written in this stage is for the CPU to read, once its submission is over.
+void record_to_host(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkAccessFlags2 access);
+
 }  // namespace afterglow

@@ -22,14 +22,7 @@ void copy_target(const Device& device, VkCommandBuffer commands, VkImage image, 
                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                   0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   record_barriers(device, commands, &back, 1);
-  const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                 .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                 .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                 .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                 .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-  const VkDependencyInfo dependency{
-      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
-  device.vk().vkCmdPipelineBarrier2(commands, &dependency);
+  record_to_host(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
 }
 
 Result<PresentTarget> PaintCheck::begin(const Device& device, VkCommandBuffer commands, const PresentTarget& target) {
