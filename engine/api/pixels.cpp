@@ -191,8 +191,7 @@ std::uint64_t write_row(const ResultRules& rules, int x, int y, int width, VkFor
   if (format == VK_FORMAT_R32G32B32A32_SFLOAT)
     return write_floats(rules, x, y, width, reinterpret_cast<const float*>(from));
   floats.resize(static_cast<std::size_t>(width) * 4);
-  const std::uint64_t held =
-      floats_from_halves(reinterpret_cast<const std::uint16_t*>(from), floats.size(), floats.data());
+  const std::uint64_t held = floats_from_halves(from, floats.size(), floats.data());
   for (int i = 0; i < width; ++i) floats[static_cast<std::size_t>(i) * 4 + 3] = alpha_at(rules.source, x + i, y);
   return held + write_floats(rules, x, y, width, floats.data());
 }

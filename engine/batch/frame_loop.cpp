@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 #include <utility>
 
 #include "batch/crop.h"
@@ -76,7 +77,7 @@ Result<void> FrameLoop::run(Schedule& schedule) {
       reading->picture.wait();
       reading->frame->steps.waited_read = milliseconds_since(waiting);
     }
-    while (overlap_ && next.size() < most_read_ && (begun < frames.size() || fetch(schedule, begun)))
+    while (overlap_ && next.size() < overlap_.read && (begun < frames.size() || fetch(schedule, begun)))
       next.push_back(begin_reading(frames[begun++]));
     if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
@@ -152,19 +153,6 @@ Result<std::shared_ptr<const Build>> FrameLoop::inspect(const FrameJob& job) {
   return planned_->request.build;
 }
 
-/// Frames are read, processed and written beside each other as memory allows.
-void FrameLoop::choose_overlap(const FrameNeed& need, const FrameJob& job) {
-  constexpr std::uint64_t kMostRead = 2, kMostWritten = 3;
-  const auto fits = [&](std::uint64_t read, std::uint64_t written) {
-    return need.frames(read, written) <= options_.max_memory;
-  };
-  overlap_ = several() && fits(1, 1);
-  most_read_ = most_written_ = 1;
-  while (overlap_ && most_written_ < kMostWritten && fits(1, most_written_ + 1)) ++most_written_;
-  const bool in_order = endless_ || job.movie;  // what gives its frames one by one has no use for two readers
-  while (overlap_ && !in_order && most_read_ < kMostRead && fits(most_read_ + 1, most_written_)) ++most_read_;
-}
-
 /// Whether there is anything to do for the device; what a picture's content makes needless is not known yet.
 bool FrameLoop::runs(const Reading& reading) { return !reading.request.build->graph.passes.empty(); }
 
@@ -205,7 +193,9 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     reading->refused = need.error();
     return reading;
   }
-  choose_overlap(*need, frame.job);
+  overlap_ = several() ? overlap_of(*need, options_.max_memory, std::thread::hardware_concurrency(),
+                                    endless_ || frame.job.movie)
+                       : Overlap{};
   reading->options.halves = halves_suffice(*reading);
   const bool reuse = options_.reuse && several() && runs(*reading);
   reading->picture = std::async(std::launch::async,
@@ -295,7 +285,7 @@ Result<void> FrameLoop::finish_running() {
                  {part->x / finer, part->y / finer, part->width / finer, part->height / finer});
   if (events_.interrupted()) return interruption();
   const auto waiting = Clock::now();
-  AFTERGLOW_CHECK(finish_writing(most_written_ - 1));
+  AFTERGLOW_CHECK(finish_writing(std::max<std::size_t>(overlap_.written, 1) - 1));
   frame.steps.waited_write = milliseconds_since(waiting);
   picture.view = options_.view;
   writing_.add(frame, reading->index, std::move(picture));

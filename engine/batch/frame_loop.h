@@ -50,7 +50,6 @@ class FrameLoop {
   struct Reading;
   bool fetch(Schedule& schedule, std::size_t place);
   bool several() const { return endless_ || total_ + pre_roll_ > 1; }
-  void choose_overlap(const FrameNeed& need, const FrameJob& job);
   static bool runs(const Reading& reading);
   bool halves_suffice(const Reading& reading) const;
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
@@ -84,9 +83,7 @@ class FrameLoop {
   std::size_t places_ = 0;  ///< of frames that are written, with those of missing ones
   bool endless_ = false;    ///< nobody knows how many frames will come
   std::optional<Error> stream_error_;
-  bool overlap_ = false;
-  std::size_t most_read_ = 1;      ///< frames that are being read beside the one that is processed
-  std::size_t most_written_ = 1;   ///< frames that are being written at a time
+  Overlap overlap_;
   std::optional<int> last_;        ///< number of the frame that the next one follows
   std::optional<int> begun_;       ///< number of the frame that was evaluated last
   std::deque<SharedSkips> skips_;  ///< of frames so far, the newest first

@@ -33,6 +33,23 @@ std::uint64_t decoder_bytes(const FrameJob& job, std::uint64_t max_bytes) {
 
 }  // namespace
 
+/// A file's own work keeps one or two processors busy: half as many files as there are processors keep all of them so.
+Overlap overlap_of(const FrameNeed& need, std::uint64_t max_memory, unsigned processors, bool in_order) {
+  constexpr std::size_t kMost = 8;
+  const std::size_t half = processors / 2;
+  const std::size_t most_read = in_order ? 1 : std::clamp<std::size_t>(half, 2, kMost);
+  const std::size_t most_written = std::clamp<std::size_t>(half, 3, kMost);
+  const auto fits = [&](std::size_t read, std::size_t written) { return need.frames(read, written) <= max_memory; };
+  if (!fits(1, 1)) return {};
+  Overlap overlap{1, 1};
+  while (true) {
+    const Overlap before = overlap;
+    if (overlap.written < most_written && fits(overlap.read, overlap.written + 1)) ++overlap.written;
+    if (overlap.read < most_read && fits(overlap.read + 1, overlap.written)) ++overlap.read;
+    if (overlap == before) return overlap;
+  }
+}
+
 Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build& build, const FrameJob& job) {
   const BuildContext& context = build.context;
   FrameNeed need;

@@ -41,6 +41,16 @@ struct FrameNeed {
   }
 };
 
+/// Frames beside the one that is processed; none: one after the other.
+struct Overlap {
+  std::size_t read = 0, written = 0;  ///< at a time
+  explicit operator bool() const { return read > 0; }
+  bool operator==(const Overlap&) const = default;
+};
+/// As many as keep the processors busy, two and three at the least, and `max_memory` has room for. `in_order`: what
+/// gives its frames one by one has no use for two readers.
+Overlap overlap_of(const FrameNeed& need, std::uint64_t max_memory, unsigned processors, bool in_order);
+
 /// Of a frame whose picture has not been read.
 struct PlannedFrame {
   const FrameJob* job = nullptr;

@@ -35,10 +35,17 @@ __attribute__((target("avx,f16c"))) std::uint64_t halves_from_floats_f16c(const 
   return held;
 }
 
-__attribute__((target("avx,f16c"))) void from_half_f16c(const std::byte* from, std::size_t count, float* to) {
+__attribute__((target("avx,f16c"))) std::uint64_t floats_from_halves_f16c(const std::byte* from, std::size_t count,
+                                                                          float* to) {
+  const __m128i magnitude = _mm_set1_epi16(0x7fff), limit = _mm_set1_epi16(kMaxHalfBits);
+  std::uint64_t held = 0;
   for (std::size_t i = 0; i < count; i += 8) {
-    _mm256_storeu_ps(to + i, _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from + 2 * i))));
+    const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from + 2 * i));
+    _mm256_storeu_ps(to + i, _mm256_cvtph_ps(halves));
+    const int bytes = _mm_movemask_epi8(_mm_cmpeq_epi16(_mm_and_si128(halves, magnitude), limit));
+    if (bytes != 0) held += static_cast<unsigned>(__builtin_popcount(static_cast<unsigned>(bytes))) / 2;
   }
+  return held;
 }
 
 #endif
@@ -88,26 +95,22 @@ std::uint64_t halves_from_floats(const float* from, std::size_t count, std::uint
   return held;
 }
 
-void from_half(const void* halves, float* values, std::size_t count) {
+std::uint64_t floats_from_halves(const void* halves, std::size_t count, float* to) {
   const auto* from = static_cast<const std::byte*>(halves);
+  std::uint64_t held = 0;
   std::size_t i = 0;
 #if AFTERGLOW_F16C
   if (has_f16c()) {
     i = count / 8 * 8;
-    from_half_f16c(from, i, values);
+    held = floats_from_halves_f16c(from, i, to);
   }
 #endif
   for (; i < count; ++i) {
     std::uint16_t bits = 0;
     std::memcpy(&bits, from + 2 * i, sizeof bits);
-    values[i] = float_from_half(bits);
+    held += (bits & ~kSign) == kMaxHalfBits;
+    to[i] = float_from_half(bits);
   }
-}
-
-std::uint64_t floats_from_halves(const std::uint16_t* from, std::size_t count, float* to) {
-  from_half(from, to, count);
-  std::uint64_t held = 0;
-  for (std::size_t i = 0; i < count; ++i) held += (from[i] & ~kSign) == kMaxHalfBits;
   return held;
 }
 

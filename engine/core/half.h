@@ -13,11 +13,8 @@ inline constexpr std::uint16_t kMaxHalfBits = 0x7bff;
 /// Values beyond ±65504, infinities too, become ±65504; NaN stays NaN. Returns how many values were held.
 std::uint64_t halves_from_floats(const float* from, std::size_t count, std::uint16_t* to);
 
-/// Floats of `count` half floats, which need not be aligned.
-void from_half(const void* halves, float* values, std::size_t count);
-
-/// The same. Returns how many values are ±65504, that is, were held there or beyond.
-std::uint64_t floats_from_halves(const std::uint16_t* from, std::size_t count, float* to);
+/// Of half floats, which need not be aligned. Returns how many values are ±65504, that is, were held there or beyond.
+std::uint64_t floats_from_halves(const void* halves, std::size_t count, float* to);
 
 /// The portable forms that both use where the CPU has no instruction for it; for tests.
 std::uint16_t half_from_float(float value);

@@ -68,7 +68,7 @@ std::uint64_t unpack_few(const std::byte* from, VkFormat format, int channels, i
     const int count = std::min(kChunk, width - x);
     const auto first = static_cast<std::size_t>(x) * channels, values = static_cast<std::size_t>(count) * channels;
     if (half)
-      held += floats_from_halves(reinterpret_cast<const std::uint16_t*>(from) + first, values, chunk.data());
+      held += floats_from_halves(from + 2 * first, values, chunk.data());
     else
       std::memcpy(chunk.data(), from + first * sizeof(float), values * sizeof(float));
     widen(chunk.data(), channels, count, rgba + static_cast<std::ptrdiff_t>(x) * 4);
@@ -81,9 +81,7 @@ std::uint64_t unpack_few(const std::byte* from, VkFormat format, int channels, i
 std::uint64_t unpack_row(const std::byte* from, VkFormat format, int width, float* rgba) {
   if (const int channels = few_channels(format)) return unpack_few(from, format, channels, width, rgba);
   const auto values = static_cast<std::size_t>(width) * 4;
-  if (format == VK_FORMAT_R16G16B16A16_SFLOAT) {
-    return floats_from_halves(reinterpret_cast<const std::uint16_t*>(from), values, rgba);
-  }
+  if (format == VK_FORMAT_R16G16B16A16_SFLOAT) return floats_from_halves(from, values, rgba);
   std::memcpy(rgba, from, values * sizeof(float));
   return 0;
 }

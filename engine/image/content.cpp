@@ -16,8 +16,8 @@ void open_color(Picture& picture, std::vector<float> memory) {
   const Image& color = picture.color;
   const std::size_t row = static_cast<std::size_t>(color.width) * 4;
   parallel_rows(color.height, static_cast<long long>(halves.size()), [&](int begin, int end) {
-    from_half(halves.data() + row * static_cast<std::size_t>(begin),
-              memory.data() + row * static_cast<std::size_t>(begin), row * static_cast<std::size_t>(end - begin));
+    const std::size_t first = row * static_cast<std::size_t>(begin);
+    floats_from_halves(halves.data() + first, row * static_cast<std::size_t>(end) - first, memory.data() + first);
   });
   picture.color.pixels = std::move(memory);
 }

@@ -140,13 +140,15 @@ std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t co
 const float* color_row(const Picture& picture, int y, std::vector<float>& memory) {
   if (picture.halves.empty()) return picture.color.at(0, y);
   memory.resize(static_cast<std::size_t>(picture.color.width) * 4);
-  from_half(half_row(picture, y), memory.data(), memory.size());
+  floats_from_halves(half_row(picture, y), memory.size(), memory.data());
   return memory.data();
 }
 
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba) {
   const auto copy = [](const float* from, std::size_t count, float* to) { std::copy_n(from, count, to); };
-  const auto open = [](const std::uint16_t* from, std::size_t count, float* to) { from_half(from, to, count); };
+  const auto open = [](const std::uint16_t* from, std::size_t count, float* to) {
+    floats_from_halves(from, count, to);
+  };
   if (picture.halves.empty()) {
     padded_row(picture, picture.color.pixels.data(), y, padding_alpha, copy, rgba);
   } else {

@@ -29,7 +29,7 @@ constexpr std::size_t kFetchedBytes = 4 << 20;
 /// The samples of one channel in one line, as floats that lie side by side.
 void take_samples(const std::uint8_t* stored, ExrChannelType type, std::size_t width, float* to) {
   if (type == ExrChannelType::half) {
-    from_half(stored, to, width);
+    floats_from_halves(stored, width, to);
   } else {
     std::memcpy(to, stored, width * sizeof(float));
   }

@@ -51,7 +51,7 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
     halves = halves_.data();
   } else if (!half && halves) {
     floats_.resize(samples);
-    from_half(halves, floats_.data(), samples);
+    floats_from_halves(halves, samples, floats_.data());
     floats = floats_.data();
   }
   const std::size_t sample = half ? sizeof(std::uint16_t) : sizeof(float);

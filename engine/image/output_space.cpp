@@ -138,7 +138,7 @@ const std::vector<float>& OutputSpace::of_halves() const {
     std::vector<std::uint16_t> bits(kAll);
     std::iota(bits.begin(), bits.end(), std::uint16_t{0});
     of_halves_.resize(kAll);
-    from_half(bits.data(), of_halves_.data(), kAll);
+    floats_from_halves(bits.data(), kAll, of_halves_.data());
     for (float& value : of_halves_) value = stored_value(value);
   });
   return of_halves_;
@@ -146,7 +146,7 @@ const std::vector<float>& OutputSpace::of_halves() const {
 
 void OutputSpace::encode_colors(const std::uint16_t* rgba, std::size_t pixels, float* stored) const {
   if (matrix_) {
-    from_half(rgba, stored, pixels * 4);
+    floats_from_halves(rgba, pixels * 4, stored);
     return encode(stored, pixels, stored);
   }
   const float* table = of_halves().data();

@@ -15,8 +15,10 @@ namespace {
 HostImage host_image(const Picture& picture, const std::string& name, const Image& image) {
   HostImage out{image.pixels.data(), image.size(), image.channels};
   if (name == "source" && !picture.halves.empty())
-    out.read_row = [halves = picture.halves.data(), values = static_cast<std::size_t>(image.width) * 4](
-                       int y, float* row) { from_half(halves + values * static_cast<std::size_t>(y), row, values); };
+    out.read_row = [halves = picture.halves.data(), values = static_cast<std::size_t>(image.width) * 4](int y,
+                                                                                                        float* row) {
+      floats_from_halves(halves + values * static_cast<std::size_t>(y), values, row);
+    };
   if (const auto known = picture.content.find(name); known != picture.content.end()) out.content = known->second;
   return out;
 }

@@ -165,7 +165,7 @@ class ImageRows {
     const std::byte* from =
         view_.pixels + static_cast<std::size_t>(y) * view_.row_pitch + first_ * (view_.half ? 8 : 16);
     if (!view_.half) return reinterpret_cast<const float*>(from);
-    from_half(from, floats_.data(), floats_.size());
+    floats_from_halves(from, floats_.size(), floats_.data());
     return floats_.data();
   }
 

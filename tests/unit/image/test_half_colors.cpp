@@ -256,7 +256,7 @@ TEST(HalfColors, StoredValuesAreThoseOfFloats) {
   std::vector<std::uint16_t> halves(4 << 16);  // each at the place of each channel
   for (std::size_t i = 0; i < halves.size(); ++i) halves[i] = static_cast<std::uint16_t>(i / 4);
   std::vector<float> light(halves.size()), of_halves(halves.size()), of_light(halves.size());
-  from_half(halves.data(), light.data(), halves.size());
+  floats_from_halves(halves.data(), halves.size(), light.data());
   for (const InputSpace& space : input_spaces()) {
     const OutputSpace& out = OutputSpace::of(space);
     out.encode(light.data(), light.size() / 4, of_light.data());
