@@ -334,6 +334,7 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
     return error;
   }
   Trace trace = std::move(traced).value();
+  session_.forget_clamped();
   take_findings(frame.non_finite, trace, picture);
   frame.non_finite.untraced = flagged && trace.passes.empty() && trace.overflows.empty();
   non_finite_.tell_overflows(frame.non_finite, frame.job.input, events_.diagnostics);

@@ -23,31 +23,39 @@ Result<GpuImage> make(const Device& device, const GraphImage& image, bool storag
 Result<DataImages> DataImages::create(const Device& device, const Graph& graph, bool storage) {
   DataImages out;
   if (storage) out.layout_ = VK_IMAGE_LAYOUT_GENERAL;
+  for (std::size_t i = 0; i < graph.images.size(); ++i) {
+    if (!graph.images[i].data) continue;
+    AFTERGLOW_TRY(GpuImage image, make(device, graph.images[i], storage));
+    out.images_.emplace(static_cast<ImageId>(i), std::move(image));
+  }
+  return out;
+}
+
+Result<void> DataImages::fill(const Device& device, const Graph& graph) {
+  if (full_ || images_.empty()) return {};
   Staging staging(device);
   std::vector<VkImageMemoryBarrier2> barriers;
-  for (std::size_t i = 0; i < graph.images.size(); ++i) {
-    const auto& data = graph.images[i].data;
-    if (!data) continue;
-    AFTERGLOW_TRY(GpuImage image, make(device, graph.images[i], storage));
+  for (const auto& [id, image] : images_) {
+    const auto& data = graph.images[id].data;
     const std::size_t row = static_cast<std::size_t>(data->size.width) * 4;
     const auto pack = [&](int y, std::byte* to) -> std::uint64_t {
       std::memcpy(to, data->pixels.data() + row * static_cast<std::size_t>(y), row * sizeof(float));
       return 0;
     };
     AFTERGLOW_CHECK(staging.upload({image.get(), kFormat, data->size}, pack));
-    if (storage)
-      barriers.push_back(image_barrier(
-          image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-          VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL));
-    out.images_.emplace(static_cast<ImageId>(i), std::move(image));
+    barriers.push_back(image_barrier(image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
+                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                     VK_IMAGE_LAYOUT_GENERAL));
   }
-  if (barriers.empty()) return out;
-  AFTERGLOW_TRY(Submitter submitter, Submitter::create(device));
-  AFTERGLOW_CHECK(submitter.submit(
-      [&](VkCommandBuffer commands) { record_barriers(device, commands, barriers.data(), barriers.size()); }));
-  AFTERGLOW_CHECK(submitter.wait());
-  return out;
+  if (layout_ == VK_IMAGE_LAYOUT_GENERAL) {
+    AFTERGLOW_TRY(Submitter submitter, Submitter::create(device));
+    AFTERGLOW_CHECK(submitter.submit(
+        [&](VkCommandBuffer commands) { record_barriers(device, commands, barriers.data(), barriers.size()); }));
+    AFTERGLOW_CHECK(submitter.wait());
+  }
+  full_ = true;
+  return {};
 }
 
 }  // namespace afterglow

@@ -11,9 +11,11 @@ namespace afterglow {
 
 class DataImages {
  public:
-  /// Makes and fills them as full floats, whatever the storage of the stack. `storage`: to be read as storage images.
-  /// Errors: device.
+  /// Makes them, as full floats whatever the storage of the stack. `storage`: to be read as storage images. Submits
+  /// nothing: programs are made on any thread. Errors: device.
   static Result<DataImages> create(const Device& device, const Graph& graph, bool storage);
+  /// Fills them from that graph, unless they are full. Submits, and waits. Errors: device.
+  Result<void> fill(const Device& device, const Graph& graph);
 
   /// The image, or null when the graph does not bring it along.
   const GpuImage* image(ImageId id) const {
@@ -26,6 +28,7 @@ class DataImages {
 
  private:
   std::map<ImageId, GpuImage> images_;
+  bool full_ = false;
   VkImageLayout layout_ = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
 };
 

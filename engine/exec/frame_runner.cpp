@@ -54,10 +54,11 @@ struct FrameRunner::State {
     Program* running = nullptr;                    ///< what was submitted
     std::uint64_t runaways = 0;                    ///< of it, when the frame began
     std::optional<Clock::time_point> submitted{};  ///< none: its kernels have been waited for
+    std::optional<Error> failed{};                 ///< as was found then
   };
   std::optional<Begun> begun;
-  bool warming_up = false;  ///< what `warm_up` submitted has not been waited for
-  Submitter submitter;      // last: it waits before the images go
+  Program* warming_up = nullptr;  ///< whose pixels `warm_up` submitted, which have not been waited for
+  Submitter submitter;            // last: it waits before the images go
 
   Result<void> leave_readable();
   Result<void> begin(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
@@ -179,19 +180,26 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
   return submitter.wait();
 }
 
-/// The one place that waits for kernels.
+/// The one place that waits for kernels. Once a frame has failed it says so each time.
 Result<void> FrameRunner::State::wait() {
-  if (std::exchange(warming_up, false)) AFTERGLOW_CHECK(submitter.wait());
-  if (!begun || !begun->submitted) return {};
+  if (Program* const warmed = std::exchange(warming_up, nullptr)) {
+    AFTERGLOW_CHECK(submitter.wait());
+    warmed->forget_runaways();  // it read images that nobody had filled
+  }
+  if (!begun) return {};
+  if (!begun->submitted) return begun->failed ? Result<void>(*begun->failed) : Result<void>();
   const auto since = *std::exchange(begun->submitted, std::nullopt);
   auto done = submitter.wait();
   begun->times.execute += milliseconds_since(since);
   auto ended = done && begun->running ? begun->running->check_loops(begun->runaways) : Result<void>();
   if (done && ended) return {};
   images.result.set_writer(0);
-  if (!ended) return ended;
-  recorded = {};
-  return KernelTimer::blame(std::move(done).error(), begun->plan);
+  if (!done) {
+    recorded = {};
+    ended = KernelTimer::blame(std::move(done).error(), begun->plan);
+  }
+  begun->failed = ended.error();
+  return ended;
 }
 
 /// Everything of a frame but waiting for it and reading it back.
@@ -281,11 +289,14 @@ Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
         s.images.result.after(commands);
       },
       State::kOneOff));
-  s.warming_up = true;
+  s.warming_up = &program;
   return {};
 }
 
-Result<void> FrameRunner::wait() { return state_->wait(); }
+Result<void> FrameRunner::wait() {
+  auto done = state_->wait();
+  return state_->begun && state_->begun->failed ? Result<void>() : done;
+}
 void FrameRunner::forget_result() { state_->images.result.set_writer(0); }
 
 Result<FrameTimes> FrameRunner::finish(HostResult& out) {

@@ -55,7 +55,8 @@ class FrameRunner {
   /// this. Makes the images of such frames. No frame may be in flight. `backwards`: see Program::record_a_pixel_each.
   /// Errors: io (over `max_memory`), device.
   Result<void> warm_up(Program& program, bool backwards = false);
-  /// Until the kernels of the frame that began have run: then its program may be used for another. Errors: device.
+  /// Until the kernels of the frame that began have run: then its program may be used for another. What became of that
+  /// frame is told by `finish`. Errors: device (of a warm-up).
   Result<void> wait();
   /// The second half. Errors: device.
   Result<FrameTimes> finish(HostResult& out);

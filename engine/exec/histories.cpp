@@ -17,12 +17,6 @@ namespace {
 /// Numbers of frames may be computed from times.
 bool same_frame(double a, double b) { return std::abs(a - b) < 1e-6; }
 
-/// Turns of all histories differ, so that a program notices when it is given others.
-std::uint64_t next_turn() {
-  static std::atomic<std::uint64_t> turns = 0;
-  return ++turns;
-}
-
 ImageDesc desc_of(const Graph& graph, const History& history, const Histories::Options& options) {
   // What is made from itself adds up its errors, frame for frame: full floats unless the effect says otherwise.
   const bool half = options.half && !history.precise;
@@ -45,6 +39,11 @@ std::uint64_t bytes_of(const ImageDesc& desc) {
 
 }  // namespace
 
+std::uint64_t Histories::next_number() {
+  static std::atomic<std::uint64_t> numbers = 0;
+  return ++numbers;
+}
+
 Result<Histories::Kept> Histories::make(const Device& device, const std::string& name, const Hash& part,
                                         ImageDesc desc) {
   Kept kept{.part = part, .images = {}};
@@ -66,16 +65,17 @@ Result<void> Histories::fit(const Device& device, const Graph& graph, const Opti
   if (total > options.max_memory)
     return Error{ErrorKind::io, fmt::format("the stack needs {} for its histories, more than the {}",
                                             memory_text(total), allowed_memory(options.max_memory))};
-  std::erase_if(kept_, [&](const auto& kept) { return !wanted.contains(kept.first); });
+  if (std::erase_if(kept_, [&](const auto& kept) { return !wanted.contains(kept.first); }) > 0)
+    images_id_ = next_number();
   for (const auto& history : graph.histories) {
     const Hash part = history_part(graph, history);
     const ImageDesc& desc = wanted.at(history.name);
     const auto found = kept_.find(history.name);
     if (found != kept_.end() && found->second.part == part && fits(found->second.images[0].desc(), desc)) continue;
+    turn_ = images_id_ = next_number();
     kept_.erase(history.name);  // before the new ones are made: they need not exist at once
     AFTERGLOW_TRY(Kept kept, make(device, history.name, part, desc));
     kept_.emplace(history.name, std::move(kept));
-    turn_ = next_turn();
   }
   return {};
 }
@@ -92,8 +92,9 @@ void Histories::take(Histories& other) {
   before_ = other.before_;
   begun_ = other.begun_;
   made_ = other.made_;
-  turn_ = next_turn();
+  turn_ = images_id_ = next_number();
   other.kept_.clear();
+  other.images_id_ = next_number();
   other.reset();
 }
 
@@ -102,7 +103,7 @@ void Histories::begin(double frame, double step, bool restart) {
     return;  // once more
   }
   const auto follows = [&](const std::optional<double>& last) { return last && same_frame(*last + step, frame); };
-  turn_ = next_turn();
+  turn_ = next_number();
   if (!restart && follows(made_)) {
     previous_ = 1 - previous_;
     before_ = made_;

@@ -27,7 +27,8 @@ class Histories {
   };
   /// Makes images for the histories of this graph. Those whose part of the graph, size and format are as before keep
   /// their pixels; others begin anew; what the graph does not have goes. Must not be called while a submission that
-  /// uses them is in flight; programs have to be pointed at them afterwards. Errors: device, io (over `max_memory`).
+  /// uses them is in flight; programs have to be pointed at them afterwards (`images_id`). Errors: device, io (over
+  /// `max_memory`).
   Result<void> fit(const Device& device, const Graph& graph, const Options& options);
   /// Takes over the images of `other` that fit as well as those here, with what they hold and the place in time;
   /// `other` is left without them. For a stack that takes another's place. As `fit` in the rest.
@@ -46,6 +47,9 @@ class Histories {
   int previous() const { return previous_; }
   /// Grows with every frame that begins; a frame that is made once more is the same.
   std::uint64_t turn() const { return turn_; }
+  /// Another number as soon as an image has come or gone; no two histories have the same. Whoever was pointed at the
+  /// images by another number has images that may be gone.
+  std::uint64_t images_id() const { return images_id_; }
   /// Whether the frame that began has one before it, for this history. Unknown names have not.
   bool has_previous(const std::string& name) const;
   /// One of the two images of a history; null for unknown names.
@@ -59,11 +63,13 @@ class Histories {
     std::array<GpuImage, 2> images;
     bool previous_holds = false, next_holds = false;  ///< what the frame before and this one made
   };
+  /// Numbers of all histories differ, so that a program notices when it is given others.
+  static std::uint64_t next_number();
   static Result<Kept> make(const Device& device, const std::string& name, const Hash& part, ImageDesc desc);
 
   std::map<std::string, Kept> kept_;
   int previous_ = 0;
-  std::uint64_t turn_ = 0;
+  std::uint64_t turn_ = 0, images_id_ = next_number();
   std::optional<double> before_;  ///< number of the frame that `previous` holds
   std::optional<double> begun_;
   std::optional<double> made_;  ///< equal to `begun_` once that has been made

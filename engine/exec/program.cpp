@@ -28,13 +28,20 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   static std::atomic<std::uint64_t> programs = 0;
   state->serial = ++programs;
   state->made.resize(state->plan.kernels.size());
-  AFTERGLOW_CHECK(state->find_parts());
   AFTERGLOW_CHECK(state->check());
-  if (!state->plan.kernels.empty()) {
+  if (state->plan.kernels.empty()) {
+    AFTERGLOW_CHECK(state->find_parts());
+  } else {
     AFTERGLOW_TRY(std::vector<KernelDesc> descs, state->describe(shaders));
     AFTERGLOW_CHECK(state->settle_rows(compiler, descs));
     AFTERGLOW_CHECK(state->make_images(descs));
     AFTERGLOW_CHECK(state->compile(compiler, descs));
+    if (state->share_too_much()) {
+      ProgramOptions drawn = options;
+      drawn.config.compute = false;
+      return create(device, shaders, compiler, graph, drawn);
+    }
+    AFTERGLOW_CHECK(state->find_parts());
     state->identify();
     AFTERGLOW_CHECK(state->take_images(descs));
     AFTERGLOW_CHECK(state->make_pipelines());
@@ -88,6 +95,7 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   };
   AFTERGLOW_CHECK(add("source", s.graph.source));
   for (const auto& [name, id] : s.graph.auxiliary) AFTERGLOW_CHECK(add(name, id));
+  AFTERGLOW_CHECK(s.data.fill(s.device, s.graph));
   s.inputs = std::move(bound);
   for (int which = 0; which < s.sets(); ++which) s.write_set(which, [&](ImageId id) { return s.look_at_input(id); });
   s.result = s.result_rows > 1 ? result.rows : std::vector{result.view};

@@ -106,8 +106,9 @@ class Program {
   /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame
   /// `record` records.
   Histories* histories() const;
-  /// Other histories, which must have been fitted to this graph (or to one that it was reduced from). Commands recorded
-  /// before must not be submitted again; none may be in flight. Errors: other (they do not fit).
+  /// Other histories, which must have been fitted to this graph (or to one that it was reduced from); nothing happens
+  /// where it uses their images already. Else commands recorded before must not be submitted again, and none may be in
+  /// flight. Errors: other (they do not fit).
   Result<void> use(std::shared_ptr<Histories> histories);
   /// Frames with the same number are recorded alike, but for what `bindings` tells: 0 and 1 take turns where there are
   /// histories. kUnlikeOthers: the frame has none before it; its commands are good for it alone, and `record` must not
@@ -120,12 +121,16 @@ class Program {
   /// often than an invocation may (CompiledKernel::loops). What the run made counts as lost.
   Result<void> check_loops(std::uint64_t since);
 
+  /// Of a run that is over and that nobody wants: lets its loops turn again.
+  void forget_runaways();
+
   /// Tells programs apart for as long as the process lives.
   std::uint64_t id() const;
 
   /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
-  /// is `result_format`. Must not be called while a submission is in flight. A program whose graph's result is
-  /// its source does nothing.
+  /// is `result_format`. Must not be called while a submission is in flight. The first time it submits what the graph
+  /// brings along, and waits. A program whose graph's result is its source does nothing. Errors: other (no such image
+  /// can be bound), device.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result);
 

@@ -37,13 +37,19 @@ struct ProgramCache::State {
   Entries entries;       ///< the one used last first
   bool present = false;  ///< the first is the present one
   bool fresh = false;    ///< it was made by the last `find`, with the values of its frame
-  bool moved = false;    ///< it has to be pointed at the histories: it was not the present one, or they are others
+  /// The program that the histories were fitted to, and their images then.
+  struct Fitted {
+    std::uint64_t program = 0, images = 0;
+    friend bool operator==(const Fitted&, const Fitted&) = default;
+  };
+  Fitted fitted;
   double milliseconds = 0;
 
   Entries::iterator found(const FrameWork& work) {
     return std::ranges::find_if(entries, [&](const Entry& entry) { return same_program(entry.work, work); });
   }
   Result<void> fit_histories();
+  Result<void> use_histories(Entry& entry);
   /// Of the present program.
   Storage storage() const {
     return present ? entries.front().work.storage.value_or(options.config.storage) : options.config.storage;
@@ -146,6 +152,17 @@ Result<void> ProgramCache::State::fit_histories() {
                          .max_memory = options.max_memory});
 }
 
+/// Programs that were not there last, or whose images another one (of a frame that failed, too) has let go, are pointed
+/// at those that there are.
+Result<void> ProgramCache::State::use_histories(Entry& entry) {
+  if (fitted == Fitted{entry.program->id(), histories->images_id()}) return {};
+  AFTERGLOW_CHECK(fit_histories());
+  AFTERGLOW_CHECK(entry.program->use(histories));
+  AFTERGLOW_CHECK(entry.idle.use(histories));
+  fitted = {entry.program->id(), histories->images_id()};
+  return {};
+}
+
 /// Images that programs share go with the last of them: where they are kept, the program before stays until the new one
 /// is there.
 Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
@@ -205,10 +222,7 @@ Result<void> ProgramCache::find(FrameWork work, ShaderLibrary& shaders) {
     }
     return made;
   }
-  if (found != s.entries.begin()) {
-    s.entries.splice(s.entries.begin(), s.entries, found);
-    s.moved = true;
-  }
+  if (found != s.entries.begin()) s.entries.splice(s.entries.begin(), s.entries, found);
   s.entries.front().work = std::move(work);
   s.present = true;
   return {};
@@ -219,12 +233,7 @@ Result<void> ProgramCache::begin() {
   if (!s.present) return {};
   State::Entry& entry = s.entries.front();
   const FrameWork& work = entry.work;
-  if (s.moved && entry.program) {
-    AFTERGLOW_CHECK(s.fit_histories());
-    AFTERGLOW_CHECK(entry.program->use(s.histories));
-    AFTERGLOW_CHECK(entry.idle.use(s.histories));
-  }
-  s.moved = false;
+  if (entry.program) AFTERGLOW_CHECK(s.use_histories(entry));
   if (!s.fresh && entry.program) entry.program->set_parameters(s.graph_of_program(work.graph));
   if (!s.fresh) entry.idle.set_parameters(work.graph);
   s.drop_spares();
@@ -277,11 +286,10 @@ void ProgramCache::take_over(ProgramCache& before, bool programs) {
   if (programs && s.entries.empty()) {
     s.entries = std::move(from.entries);
     s.present = std::exchange(from.present, false);
-    s.moved = from.moved;
+    s.fitted = from.fitted;
     s.histories = from.histories;
     return;
   }
-  s.moved = true;
   if (program()) {
     s.histories->take(*from.histories);
     if (programs) s.entries.splice(s.entries.end(), from.entries);
@@ -307,6 +315,10 @@ Result<std::unique_ptr<Program>> ProgramCache::by_passes(const Graph& graph, con
   options.pipelines = &s.shared->pipelines;
   options.histories = s.histories;
   return Program::create(s.device, shaders, s.shared->compiler, graph, options);
+}
+
+bool ProgramCache::can_use_again(Program& by_passes) const {
+  return static_cast<bool>(by_passes.use(state_->histories));
 }
 
 int ProgramCache::programs() const { return program() ? 1 + state_->entries.front().idle.size() : 0; }

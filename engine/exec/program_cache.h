@@ -124,6 +124,9 @@ class ProgramCache {
   /// histories. In full floats, unless the histories are half floats. Errors: those of `find`.
   Result<std::unique_ptr<Program>> by_passes(const Graph& graph, const std::optional<Rect>& region,
                                              ShaderLibrary& shaders) const;
+  /// Such a program once more, for the frame that began: false where its histories are others now and it cannot be
+  /// used.
+  bool can_use_again(Program& by_passes) const;
   const std::shared_ptr<SharedKernels>& kernels() const;
   /// As programs here are made, for WarmUp.
   ProgramOptions program_options() const;

@@ -61,6 +61,7 @@ bool Program::State::begins_anew() const {
 
 Result<void> Program::State::use(std::shared_ptr<Histories> given) {
   if (graph.histories.empty()) return {};
+  if (given && given->images_id() == history_images) return {};
   for (const auto& history : graph.histories) {
     const GpuImage* image = given ? given->image(history.name, 0) : nullptr;
     if (!image || image->desc().size != graph.images[history.next].size ||
@@ -68,6 +69,7 @@ Result<void> Program::State::use(std::shared_ptr<Histories> given) {
       return Error{ErrorKind::other, fmt::format("there are no images for the history '{}'", history.name)};
   }
   histories = std::move(given);
+  history_images = histories->images_id();
   for (const int parity : {kEven, kOdd}) write_set(parity, [&](ImageId id) { return look_at_history(id, parity); });
   make_commands();
   ++uses;

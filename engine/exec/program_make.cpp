@@ -31,16 +31,21 @@ void Program::State::settle_config() {
   config.hardware_filter = config.hardware_filter && filters(format) && filters(VK_FORMAT_R32_SFLOAT) &&
                            filters(VK_FORMAT_R32G32B32A32_SFLOAT);
   config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
-  // One of them is what a compute kernel writes.
-  const auto storage_images = std::min(device.properties().limits.maxPerStageDescriptorStorageImages, 1024u);
-  options.most_storage_reads = std::min(options.most_storage_reads, static_cast<int>(storage_images) - 1);
+  // One of them is what a compute kernel writes. A fragment shader may have so many together with its targets and the
+  // word of its loops.
+  const VkPhysicalDeviceLimits& limits = device.properties().limits;
+  const auto most = [](std::uint32_t limit) { return static_cast<int>(std::min(limit, 1024u)); };
+  options.most_storage_reads =
+      std::min({options.most_storage_reads, most(limits.maxPerStageDescriptorStorageImages) - 1,
+                most(limits.maxFragmentCombinedOutputResources) - (config.dispatched ? 1 : config.rows) - 1});
   config.four_channels = config.four_channels || !holds_few_channels(device, graph, config);
   if (device.is_cpu()) fit_to_cpu_driver(config);
   config.two_draws = config.two_draws && !options.reference;
   config.guard_loops = device.stores_from_fragments();
 }
 
-/// Passes that have two ways are drawn where a device is too small for the workgroups of the other.
+/// Passes that have two ways are drawn where a device is too small for the workgroups of the other. What they share is
+/// known once they are compiled (`share_too_much`).
 void Program::State::settle_workgroups(ShaderLibrary& shaders) {
   const auto fits = [&](const Pass& pass) {
     if (pass.by_workgroups.empty()) return true;
@@ -49,6 +54,16 @@ void Program::State::settle_workgroups(ShaderLibrary& shaders) {
     return !group || check_workgroup(device, group->invocations, 0, pass.name);
   };
   options.config.compute = options.config.compute && std::ranges::all_of(graph.passes, fits);
+}
+
+/// Workgroups of passes that have two ways share more than the device allows.
+bool Program::State::share_too_much() const {
+  const std::uint64_t allowed = device.properties().limits.maxComputeSharedMemorySize;
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+    const bool two_ways = !graph.passes[plan.kernels[i].passes.front()].by_workgroups.empty();
+    if (plan.kernels[i].workgroups && two_ways && compiled_of(i).shared_bytes > allowed) return true;
+  }
+  return false;
 }
 
 /// The linear image that a result by rows is.
@@ -269,7 +284,17 @@ Result<void> Program::State::make_histories() {
                          .max_memory = options.max_memory - std::min(options.max_memory, arena.memory().arena)});
 }
 
-/// What each kernel draws.
+/// Pixels that kernels make together.
+std::vector<Size> Program::State::blocks() const {
+  std::vector<Size> out;
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+    const CompiledKernel& kernel = compiled_of(i);
+    out.push_back(kernel.workgroup ? kernel.workgroup->pixels : Size{1, kernel.rows});
+  }
+  return out;
+}
+
+/// What each kernel draws, once they are compiled.
 Result<void> Program::State::find_parts() {
   const auto whole = [this](ImageId id) {
     return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height};
@@ -279,7 +304,7 @@ Result<void> Program::State::find_parts() {
     if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||
         part.y + part.height > all.height)
       return Error{ErrorKind::other, "the region is not within the picture"};
-    parts = regions(graph, plan, part, options.config.rows);
+    parts = regions(graph, plan, part, blocks());
     return {};
   }
   for (const auto& kernel : plan.kernels) parts.kernels.push_back(whole(kernel.output));

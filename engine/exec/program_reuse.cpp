@@ -88,6 +88,8 @@ Result<void> Program::check_loops(std::uint64_t since) {
   return s.loops.error();
 }
 
+void Program::forget_runaways() { state_->loops.look(); }
+
 std::vector<bool> Program::begin_run(const InputVersions& inputs, bool result_lost) {
   State& s = *state_;
   const std::size_t count = s.plan.kernels.size();

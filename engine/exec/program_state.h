@@ -59,6 +59,7 @@ struct Program::State {
   bool linear = false;                   ///< images between kernels stay in GENERAL
   int bindings = 0, uses = 0;            ///< of inputs and result; of histories
   std::shared_ptr<Histories> histories;  ///< null when the graph has none
+  std::uint64_t history_images = 0;      ///< Histories::images_id of those that it was pointed at
 
   /// Sets of descriptors for each kernel: one for each image that a history's previous one may be, and one for frames
   /// that have none before them.
@@ -94,6 +95,8 @@ struct Program::State {
   void settle_config();
   void settle_workgroups(ShaderLibrary& shaders);
   Result<void> check();
+  bool share_too_much() const;
+  std::vector<Size> blocks() const;
   Result<void> find_parts();
   Result<std::vector<KernelDesc>> describe(ShaderLibrary& shaders);
   bool from_pool() const { return options.images && options.keep_images && !options.reference; }

@@ -69,7 +69,7 @@ class Renderer {
   /// Both, for one frame alone.
   Result<FrameReport> render(RenderRequest request, HostResult& out);
   /// Until no frame that is in flight touches its program any more: before programs are prepared otherwise. Results can
-  /// be collected still. Errors: device.
+  /// be collected still; what became of a frame is told then. Errors: device (of a warm-up).
   Result<void> wait();
 
   /// Runs a frame and leaves its result on the device: see `images` and `read_result`. Whoever reads the images of the

@@ -28,6 +28,10 @@ std::optional<std::uint32_t> find_memory_type(const VkPhysicalDeviceMemoryProper
   struct Wishes {
     VkMemoryPropertyFlags flags[3];
   };
+  // Not to be had without more: protected submissions, transient attachments, features of AMD's that nobody turns on.
+  constexpr VkMemoryPropertyFlags kOfOthers =
+      VK_MEMORY_PROPERTY_PROTECTED_BIT | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT |
+      VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
   // From the best to what will do.
   const Wishes wishes = access == HostAccess::none ? Wishes{{kLocal, 0, 0}}
                         : access == HostAccess::write
@@ -36,7 +40,7 @@ std::optional<std::uint32_t> find_memory_type(const VkPhysicalDeviceMemoryProper
   for (const VkMemoryPropertyFlags wanted : wishes.flags) {
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
       const VkMemoryPropertyFlags flags = memory.memoryTypes[i].propertyFlags;
-      if (flags & (VK_MEMORY_PROPERTY_PROTECTED_BIT | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT)) continue;
+      if (flags & kOfOthers) continue;
       if ((bits & (1u << i)) && (flags & wanted) == wanted) return i;
     }
   }

@@ -60,12 +60,13 @@ Rect filter_rect(const Filter& filter, const Rect& target, Size source_size, Siz
   return source_rect(target, source_size, target_size, x, y, around);
 }
 
-/// Grown to whole groups of rows.
-Rect by_rows(Rect rect, int rows, int height) {
-  const int end = std::min((rect.y + rect.height + rows - 1) / rows * rows, height);
-  rect.y = rect.y / rows * rows;
-  rect.height = end - rect.y;
-  return rect;
+/// Grown to whole blocks, within the image.
+Rect in_blocks(const Rect& rect, Size block, Size image) {
+  const auto begin = [](int first, int size) { return first / size * size; };
+  const auto end = [](int last, int size, int most) { return std::min((last + size - 1) / size * size, most); };
+  const int x = begin(rect.x, block.width), y = begin(rect.y, block.height);
+  return {x, y, end(rect.x + rect.width, block.width, image.width) - x,
+          end(rect.y + rect.height, block.height, image.height) - y};
 }
 
 /// What a pass reads of an input when `target` of its output is drawn.
@@ -87,7 +88,7 @@ Rect united(const Rect& a, const Rect& b) {
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int rows) {
+Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, const std::vector<Size>& blocks) {
   Regions out;
   out.kernels.resize(plan.kernels.size());
   out.images.resize(graph.images.size());
@@ -100,8 +101,8 @@ Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int ro
   for (std::size_t k = plan.kernels.size(); k-- > 0;) {
     const PlanKernel& kernel = plan.kernels[k];
     if (is_empty(out.images[kernel.output])) continue;
-    const Rect target = out.kernels[k] =
-        by_rows(out.images[kernel.output], rows, graph.images[kernel.output].size.height);
+    const Size block = blocks.empty() ? Size{1, 1} : blocks[k];
+    const Rect target = out.kernels[k] = in_blocks(out.images[kernel.output], block, graph.images[kernel.output].size);
     for (const int index : kernel.passes) {
       const Pass& pass = graph.passes[index];
       // All passes of a kernel make images of one size, at the same pixels. What flows from one to the next is no

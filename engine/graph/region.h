@@ -17,9 +17,9 @@ struct Regions {
 /// What `wanted` of the result (within it, not empty) needs, found backwards through the plan: the same part of images
 /// that are read pixel by pixel; of a filter's source the corresponding part and the reach of its taps; of an image
 /// that a sample pass reads the corresponding part and the pass's reach, or all of it when the pass states none; all of
-/// what histories keep. Parts
-/// of kernels begin and end at multiples of `rows` (or at the image's edge): kernels may make so many at a time.
-Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int rows = 1);
+/// what histories keep. `blocks`, parallel to the plan's kernels: pixels that a kernel makes together (rows of an
+/// invocation, a workgroup); its part begins and ends with whole ones, or at the image's edge. Empty: single pixels.
+Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, const std::vector<Size>& blocks = {});
 
 /// The smallest rectangle around both; a rectangle without pixels adds nothing.
 Rect united(const Rect& a, const Rect& b);

@@ -2,7 +2,7 @@
 // What Lua has and presets do not: reading it says so, and why.
 #pragma once
 
-#include <lua.hpp>
+#include "script/lua.h"
 
 namespace afterglow::script {
 

@@ -2,7 +2,7 @@
 // Arguments of a preset: fx.args{…}, and `--arg NAME=VALUE`.
 #pragma once
 
-#include <lua.hpp>
+#include "script/lua.h"
 
 namespace afterglow::script {
 

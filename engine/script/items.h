@@ -2,9 +2,9 @@
 // What stands in a stack or a group without a name: entries, groups, lists of them.
 #pragma once
 
-#include <lua.hpp>
 #include <vector>
 
+#include "script/lua.h"
 #include "script/runtime.h"
 #include "script/table_reader.h"
 

@@ -2,10 +2,11 @@
 // Masks: fx.mask.NAME{…} and what operators make of them.
 #pragma once
 
-#include <lua.hpp>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "script/lua.h"
 
 namespace afterglow::script {
 

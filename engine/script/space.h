@@ -2,10 +2,10 @@
 // `space` of an effect: the light that it is made for, and the light that each entry of a stack gets.
 #pragma once
 
-#include <lua.hpp>
 #include <vector>
 
 #include "script/entry_run.h"
+#include "script/lua.h"
 #include "script/table_reader.h"
 
 namespace afterglow::script {

@@ -234,6 +234,8 @@ Result<Trace> Session::trace(const Picture& picture, const FrameRequest& request
   return state_->tracer->run(*state_->stack, picture, request, policy);
 }
 
+void Session::forget_clamped() { state_->result.clamped = 0; }
+
 SessionReport Session::report() const {
   const Stack& stack = *state_->stack;
   SessionReport report;

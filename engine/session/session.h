@@ -56,8 +56,8 @@ class Session {
   /// Loads the preset while the device opens. Errors: script, device, usage (unknown override).
   static Result<std::unique_ptr<Session>> open(const std::filesystem::path& preset, const SessionOptions& options,
                                                Diagnostics& diagnostics);
-  /// Does not wait for the device: until `ready` has, only `preset` and `evaluate` may be used, and of `stack` what needs
-  /// no device. `diagnostics` must stay until then. Errors: script, usage.
+  /// Does not wait for the device: until `ready` has, only `preset` and `evaluate` may be used, and of `stack` what
+  /// needs no device. `diagnostics` must stay until then. Errors: script, usage.
   static Result<std::unique_ptr<Session>> begin(const std::filesystem::path& preset, const SessionOptions& options,
                                                 Diagnostics& diagnostics);
   /// Waits for the device, the first time. Errors: device.
@@ -94,6 +94,8 @@ class Session {
   /// Which passes make what is not finite in a frame, and its mended result: see session/trace.h. The frame that was
   /// processed last, or the next one that will be; arguments are those of `process`.
   Result<Trace> trace(const Picture& picture, const FrameRequest& request, NanPolicy policy);
+  /// The last result was replaced by that of a trace: none of its samples was held at what half floats hold.
+  void forget_clamped();
   SessionReport report() const;
 
  private:

@@ -97,7 +97,8 @@ Tracer::Tracer(Device& device, std::uint64_t max_memory) : state_(std::make_uniq
 Tracer::~Tracer() = default;
 
 Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std::optional<Rect>& part) {
-  const bool reusable = program && region == part && same_structure(guarded.graph, wanted.graph);
+  const bool reusable = program && region == part && same_structure(guarded.graph, wanted.graph) &&
+                        stack.programs()->can_use_again(*program);
   guarded = std::move(wanted);
   region = part;
   if (!renderer) {

@@ -283,6 +283,9 @@ TEST_F(NonFiniteValues, OverflowOfHalfFloatsIsNamed) {
   EXPECT_THAT(outcome.err,
               HasSubstr("pass 'broken.apply' overflows half floats: 1 samples above 65504, first at pixel 4,9: "
                         "(70000, 0.33, 0.34, 1)"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("were held"))) << "the file has it";
+  EXPECT_EQ(load("o.exr")[at(4, 9, 0)], 70000);
+  EXPECT_EQ(report()["session"]["clamped_samples"], 0);
   EXPECT_THAT(run_look({"--precision", "fp32"}).err, IsEmpty());
 }
 

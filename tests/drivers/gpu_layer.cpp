@@ -97,6 +97,7 @@ void imitate(VkPhysicalDeviceProperties& properties) {
   limits.maxPerStageDescriptorSamplers = limits.maxPerStageDescriptorSampledImages = 16;
   limits.maxPerStageDescriptorUniformBuffers = 12;
   limits.maxPerStageDescriptorStorageImages = limits.maxPerStageDescriptorStorageBuffers = 4;
+  limits.maxFragmentCombinedOutputResources = 4;
   limits.maxPerStageResources = 128;
   limits.maxComputeWorkGroupInvocations = limits.maxComputeWorkGroupSize[0] = limits.maxComputeWorkGroupSize[1] = 128;
   limits.maxComputeSharedMemorySize = 16384;

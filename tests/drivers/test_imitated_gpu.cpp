@@ -123,6 +123,27 @@ return fx.effect { name = "most", doc = "Times two.", at = "post_process", order
   expect_near("gpu.exr", "cpu.exr", 1e-5);
 }
 
+/// Nor has it more than 16384 bytes to share.
+TEST_F(ImitatedGpu, PassesWhoseWorkgroupsShareTooMuchAreDrawn) {
+  make_exr("a.exr");
+  write("effects/shared.lua", R"(local fx = require "afterglow"
+return fx.effect { name = "shared", doc = "Times two.", at = "post_process", order = 50,
+  build = function(g, s, source) return g:pass { shader = "shared/one", compute = "shared/many", source = source, size = source } end }
+)");
+  write("shaders/shared/one.glsl",
+        "uniform sampler2D source;\nvec4 sample_at(ivec2 pixel) { return fetch(source, pixel) * 2.0; }\n");
+  write("shaders/shared/many.glsl",
+        "layout(local_size_x = 8, local_size_y = 8) in;\nuniform sampler2D source;\nshared vec4 tile[1280];\n"
+        "vec4 compute_at(ivec2 pixel) {\n  tile[gl_LocalInvocationIndex * 16u] = fetch(source, pixel);\n"
+        "  return tile[gl_LocalInvocationIndex * 16u] * 2.0;\n}\n");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.shared {}, fx.bloom { threshold = 0.5 } }\n");
+  done({"run", "look.lua", "a.exr", "-o", "gpu.exr", "--calibration", table_of("fused fp32 compute"), "--type",
+        "float"});
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "cpu.exr", "--type", "float"}).exit_code, kDone);
+  expect_near("gpu.exr", "cpu.exr", 1e-5);
+}
+
 /// Its timestamps run over at the first pass.
 TEST_F(ImitatedGpu, TimesOfPassesAreTimes) {
   make_exr("a.exr");

@@ -124,6 +124,16 @@ TEST(House, RoomsUseOnlyRoomsAboveThem) {
   }
 }
 
+/// script/lua.h knows by which names the system's Lua is linked; Lua's own headers do not.
+TEST(House, LuaIsIncludedInOnePlace) {
+  for (const auto& file : files_below(kProject / "engine", {".h", ".cpp"})) {
+    if (file.filename() == "lua.h") continue;
+    const std::string text = read_file(file).value();
+    for (const char* header : {"<lua.h>", "<lua.hpp>", "<lauxlib.h>", "<lualib.h>"})
+      EXPECT_EQ(text.find(std::string("#include ") + header), std::string::npos) << file << " includes " << header;
+  }
+}
+
 /// Newer CLI11 throws at names with these characters, before any command has begun.
 TEST(House, NamesOfOptionsArePlain) {
   const std::string call = "add_option(";

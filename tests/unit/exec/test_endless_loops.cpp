@@ -77,6 +77,61 @@ TEST_F(EndlessLoops, AreToldByFileAndLine) {
       5);
 }
 
+/// A warm-up draws pixels of images that nobody has filled: a loop that ends by what it reads may not end there, which
+/// is no fault of the frame behind it.
+TEST_F(EndlessLoops, AWarmUpTellsNothing) {
+  const Size size{64, 64};
+  shader("sum", sample("float at = 0.0;\nwhile (!(at >= 10.0)) at += c.a;\nc.r = at;"));
+  GraphBuilder builder(size);
+  const Graph graph = builder.finish(builder.sample("pass", "sum", size, {{"source", builder.source()}}));
+  for (const bool dispatched : {false, true}) {
+    const auto made =
+        program(graph, {.config = {.dispatched = dispatched}, .inputs_are_storage = true, .result_stored = true});
+    ASSERT_TRUE(made);
+    const auto runner = FrameRunner::create(device(), 6ull << 30);
+    ASSERT_TRUE(runner);
+    ASSERT_TRUE((*runner)->warm_up(*made));
+    const std::vector<float> source(static_cast<std::size_t>(size.area()) * 4, 0.5f);
+    HostResult out;
+    const auto done =
+        (*runner)->run(*made, {{"source", {.pixels = source.data(), .size = size}}}, out, KernelTiming::none);
+    ASSERT_TRUE(done) << done.error().text();
+    EXPECT_EQ(out.pixels[0], 10);
+  }
+}
+
+/// Workgroups are whole, regions need not be: what stands in a group beside a region reads what is made.
+TEST_F(EndlessLoops, RegionsReadNothingThatIsNotMade) {
+  const Size size{101, 57};
+  shader("half", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return 0.5 * fetch(source, p); }\n");
+  shader("drawn", sample("float at = 0.0;\nwhile (!(at >= 10.0)) at += c.a;\nc.r = at;"));
+  shader("grouped",
+         "layout(local_size_x = 8, local_size_y = 8) in;\nuniform sampler2D source;\nvec4 compute_at(ivec2 pixel) {\n"
+         "  vec4 c = fetch(source, pixel);\n  float at = 0.0;\n  while (!(at >= 10.0)) at += c.a;\n  c.r = at;\n"
+         "  return c;\n}\n");
+  for (const char* way : {"drawn", "dispatched", "grouped"}) {
+    const bool grouped = std::string(way) == "grouped";
+    GraphBuilder builder(size);
+    const ImageId half = builder.sample("half", "half", size, {{"source", builder.source()}});
+    ImageId made = builder.sample("loop", grouped ? "grouped" : "drawn", size, {{"source", half}});
+    if (grouped) made = builder.sample("copy", "copy", size, {{"source", made}});
+    Graph graph = builder.finish(made);
+    if (grouped) graph.passes[1].kind = PassKind::compute;
+    for (Pass& pass : graph.passes) pass.reach = 0;
+    const std::vector<float> source(static_cast<std::size_t>(size.area()) * 4, 1.0f);
+    const Rect part{37, 21, 30, 9};
+    const auto out = run(graph, {{"source", {.pixels = source.data(), .size = size}}},
+                         {.config = {.fusion = Fusion::none, .dispatched = std::string(way) == "dispatched"},
+                          .inputs_are_storage = true,
+                          .result_stored = true,
+                          .region = part});
+    ASSERT_FALSE(out.pixels.empty()) << way;
+    const auto at = [&](int x, int y) { return out.pixels[static_cast<std::size_t>(y * size.width + x) * 4]; };
+    EXPECT_EQ(at(part.x, part.y), 10) << way;
+    EXPECT_EQ(at(part.x + part.width - 1, part.y + part.height - 1), 10) << way;
+  }
+}
+
 /// The first pixel that runs out of turns ends the frame: one by one, these would take hours.
 TEST_F(EndlessLoops, EndTheirFrame) {
   EXPECT_THAT(outcome(sample("for (;;) for (int i = 0; i < 4000; ++i) c = sin(c) + cos(c.bgra * float(i));"), nullptr,

@@ -196,6 +196,30 @@ TEST_F(RendererTest, TooManyAndTooFewAreTold) {
   EXPECT_TRUE(ring->collect(out)) << "the first one is as it was";
 }
 
+/// What only the device finds out is told of the frame that it is about, not of the one that is submitted meanwhile.
+TEST_F(RendererTest, AFrameThatFailsOnTheDeviceIsTheOneThatIsTold) {
+  shader("test/until",
+         "vec4 apply(vec4 color) { float sum = 0.0;\n  while (!(sum >= 8.0)) sum += color.r;\n"
+         "  return vec4(sum); }\n");
+  GraphBuilder builder(kSize);
+  const Graph until = builder.finish(builder.pixel("until", "test/until", builder.source()));
+  const std::vector<float> ends(noise(kSize, 1).size(), 0.5f), runs_away(ends.size(), 0.0f);
+  const auto programs = cache();
+  const auto ring = renderer(2);
+  HostResult out;
+  ASSERT_TRUE(ring->submit(request(*programs, until, runs_away)));
+  ASSERT_TRUE(ring->submit(request(*programs, until, ends)));
+  const auto first = ring->collect(out);
+  ASSERT_FALSE(first);
+  EXPECT_NE(first.error().message.find("a loop did not end"), std::string::npos) << first.error().text();
+  ASSERT_TRUE(ring->submit(request(*programs, until, ends)));
+  for (int i = 0; i < 2; ++i) {
+    const auto next = ring->collect(out);
+    ASSERT_TRUE(next) << next.error().text();
+    EXPECT_EQ(out.pixels[0], 8);
+  }
+}
+
 /// A frame that fails leaves the ones before it and those after it alone.
 TEST_F(RendererTest, AFrameThatFailsIsNotInFlight) {
   const auto programs = cache();

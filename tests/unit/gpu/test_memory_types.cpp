@@ -42,11 +42,16 @@ TEST(MemoryType, CachedIsWorthMoreThanCoherentForReading) {
   EXPECT_EQ(find_memory_type(machine({kLocal, kVisible | kCached}), kAll, HostAccess::write), 1u);
 }
 
-TEST(MemoryType, ProtectedAndLazyMemoryAreNeverTaken) {
+TEST(MemoryType, WhatNeedsMoreThanAskingIsNeverTaken) {
   const auto odd =
       machine({kLocal | VK_MEMORY_PROPERTY_PROTECTED_BIT, kLocal | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT, kLocal});
   EXPECT_EQ(find_memory_type(odd, kAll, HostAccess::none), 2u);
   EXPECT_EQ(find_memory_type(odd, 0b011, HostAccess::none), std::nullopt);
+  constexpr VkMemoryPropertyFlags kAmd =
+      VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
+  const auto amd = machine({kLocal, kVisible | kCoherent, kLocal | kAmd, kVisible | kCoherent | kAmd});
+  EXPECT_EQ(find_memory_type(amd, 0b1100, HostAccess::none), std::nullopt) << "when all others are full";
+  EXPECT_EQ(find_memory_type(amd, 0b1100, HostAccess::write), std::nullopt);
 }
 
 }  // namespace

@@ -124,9 +124,10 @@ TEST(Region, HoldsEveryPixelThatIsNeeded) {
     Rect wanted{random.number(0, size.width - 1), random.number(0, size.height - 1), 0, 0};
     wanted.width = random.number(1, size.width - wanted.x);
     wanted.height = random.number(1, size.height - wanted.y);
-    const int rows = 1 << random.number(0, 3);
     const Plan plan = make_plan(graph, {.fusion = random.number(0, 1) ? Fusion::all : Fusion::none});
-    const Regions found = regions(graph, plan, wanted, rows);
+    std::vector<Size> blocks(plan.kernels.size());
+    for (Size& block : blocks) block = {1 << random.number(0, 4), random.number(1, 9)};
+    const Regions found = regions(graph, plan, wanted, blocks);
     const auto needed = search(graph, wanted);
     for (std::size_t i = 0; i < graph.images.size(); ++i) {
       const Size all = graph.images[i].size;
@@ -139,9 +140,14 @@ TEST(Region, HoldsEveryPixelThatIsNeeded) {
     }
     for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
       const Rect &drawn = found.kernels[k], &read = found.images[plan.kernels[k].output];
-      EXPECT_LE(drawn.y, read.y);
-      EXPECT_GE(drawn.y + drawn.height, read.y + read.height);
-      EXPECT_EQ(drawn.y % rows, 0);
+      const Size all = graph.images[plan.kernels[k].output].size;
+      if (read.width <= 0 || read.height <= 0) continue;
+      EXPECT_EQ(united(drawn, read), drawn);
+      const int right = drawn.x + drawn.width, below = drawn.y + drawn.height;
+      EXPECT_EQ(drawn.x % blocks[k].width, 0);
+      EXPECT_EQ(drawn.y % blocks[k].height, 0);
+      EXPECT_TRUE(right == all.width || right % blocks[k].width == 0) << right;
+      EXPECT_TRUE(below == all.height || below % blocks[k].height == 0) << below;
     }
   }
 }

@@ -45,6 +45,21 @@ return fx.effect {
     return g:pass { shader = "t/times", source = source, factor = s.factor, name = "times" }
   end,
 })";
+// `sized`: the same sum, kept at one of two sizes.
+constexpr const char* kSized = R"(
+local fx = require "afterglow"
+return fx.effect {
+  name = "sized", at = "post_process", order = 100,
+  settings = { small = fx.bool { default = false, doc = "keep less" },
+               broken = fx.bool { default = false, doc = "with a shader that does not compile" } },
+  build = function(g, s, source)
+    local size = s.small and { 8, 8 } or source
+    local before = g:history { name = "before", size = size, first = { 16, 0, 0, 1 } }
+    local now = g:pass { shader = "t/half", source = source, before = before, size = size }
+    g:keep(before, now)
+    return g:pass { shader = s.broken and "t/broken" or "t/corner", source = source, now = now }
+  end,
+})";
 
 class HistoriesOfFrames : public testing::Test {
  protected:
@@ -53,6 +68,15 @@ class HistoriesOfFrames : public testing::Test {
     fs::create_directories(folder_ / "shaders" / "t");
     write("effects/trail.lua", kTrail);
     write("effects/other.lua", kOther);
+    write("effects/sized.lua", kSized);
+    write("shaders/t/half.glsl",
+          "uniform sampler2D source;\nuniform sampler2D before;\n"
+          "vec4 sample_at(ivec2 p) { return fetch(source, p) + 0.5 * fetch(before, p); }\n");
+    const std::string corner =
+        "uniform sampler2D source;\nuniform sampler2D now;\n"
+        "vec4 sample_at(ivec2 p) { return vec4(fetch(now, ivec2(0)).rgb, fetch(source, p).a); }\n";
+    write("shaders/t/corner.glsl", corner);
+    write("shaders/t/broken.glsl", corner + "float nothing() { return nowhere; }\n");
     write("shaders/t/times.glsl",
           "uniform float factor;\nvec4 apply(vec4 color) { return vec4(color.rgb * factor, color.a); }\n");
     write("shaders/t/add.glsl",
@@ -290,6 +314,43 @@ TEST_F(HistoriesOfFrames, AStackThatTakesAnothersPlaceGoesOn) {
   request->inputs = {{"source", {p.color.pixels.data(), p.color.size(), 4}}};
   ASSERT_TRUE((*renderer)->render(std::move(*request), out));
   EXPECT_EQ(out.pixels[0], 4.75f);
+}
+
+/// A trace has a program of its own, which is used for one frame after the other as long as the graph is the same.
+TEST_F(HistoriesOfFrames, ATraceReadsThoseOfItsFrame) {
+  look("fx.sized { small = function(t) return t.frame == 2 end }");
+  StackOptions options;
+  options.spare_programs = 3;
+  const auto session = open(options);
+  for (const auto& [frame, red] : {std::pair(1, 9.0f), {2, 9}, {3, 9}, {4, 5.5f}, {5, 3.75f}}) {
+    EXPECT_EQ(run(*session, frame, 1), red) << frame;
+    BuildContext context{.size = {kWidth, kHeight}};
+    context.frame = frame;
+    auto build = session->evaluate(context);
+    ASSERT_TRUE(build);
+    const auto trace = session->trace(picture(1), request_for(std::move(*build)), NanPolicy::zero);
+    ASSERT_TRUE(trace) << trace.error().text();
+    EXPECT_EQ(trace->result.pixels[0], red) << frame;
+    EXPECT_EQ(session->device().validation_errors(), 0) << session->device().validation_messages().front();
+  }
+}
+
+/// What the frame that failed would have kept is of another size: the images before it are gone.
+TEST_F(HistoriesOfFrames, AFrameThatFailsLeavesNothingBehind) {
+  look("fx.sized { small = function(t) return t.frame == 3 end, broken = function(t) return t.frame == 3 end }");
+  for (const int spare : {0, 3}) {
+    StackOptions options;
+    options.spare_programs = spare;
+    const auto session = open(options);
+    EXPECT_EQ(run(*session, 1, 1), 9);
+    EXPECT_EQ(run(*session, 2, 1), 5.5f);
+    Picture p = picture(1);
+    BuildContext context;
+    context.frame = 3;
+    EXPECT_FALSE(session->process(p, context));
+    EXPECT_EQ(run(*session, 4, 1), 9);
+    EXPECT_EQ(run(*session, 5, 1), 5.5f);
+  }
 }
 
 TEST_F(HistoriesOfFrames, WithoutThemAFrameIsTheSameWhateverWasPlayed) {
