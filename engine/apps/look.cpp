@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/look.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -114,6 +116,17 @@ LookFindings check_shaders(const Look& look) {
     if (ran > 0) kernels.check(build->graph);
   }
   LookFindings out{std::move(kernels.found), std::move(waiting)};
+  for (const Size size : {Size{1279, 719}, Size{321, 181}}) {
+    BuildContext context = look.build.context;
+    context.size = size;
+    for (auto& [name, of] : context.auxiliary) of = size;
+    Diagnostics silent;
+    const auto build = look.preset->evaluate(context, silent);
+    const auto good = build ? validate(build->graph) : Result<void>(build.error());
+    if (!good)
+      out.shaders.warnings.push_back(
+          fmt::format("pictures of {}x{} pixels: {}", size.width, size.height, good.error().text()));
+  }
   std::set<std::string> seen;
   std::erase_if(out.shaders.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
   std::erase_if(out.shaders.warnings, [&](const std::string& warning) { return !seen.insert(warning).second; });

@@ -44,8 +44,8 @@ ImageDesc Arena::desc_of(const Graph& graph, ImageId id, const ArenaOptions& opt
                                  (options.storage || options.stored.contains(id) ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
   return {.name = graph.images[id].name,
           .size = graph.images[id].size,
-          .format =
-              float_format(options.channels.empty() ? 4 : options.channels[static_cast<std::size_t>(id)], options.half),
+          .format = float_format(options.channels.empty() ? 4 : options.channels[static_cast<std::size_t>(id)],
+                                 options.half && !is_precise(graph, id)),
           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | more,
           .tiling = options.rows.empty() ? VK_IMAGE_TILING_OPTIMAL : VK_IMAGE_TILING_LINEAR};
 }

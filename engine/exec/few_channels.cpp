@@ -30,7 +30,7 @@ bool holds_few_channels(const Device& device, const Graph& graph, const Executio
   if (stored) wanted |= VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
   return std::ranges::all_of(graph.images, [&](const GraphImage& image) {
     if (image.channels == 4) return true;
-    const VkFormat wish = float_format(image.channels, config.storage == Storage::fp16);
+    const VkFormat wish = float_format(image.channels, config.storage == Storage::fp16 && !image.precise);
     return supports(device, wish, wanted) && (!stored || wish == VK_FORMAT_R32_SFLOAT || device.stores_few_channels());
   });
 }

@@ -30,7 +30,7 @@ bool same_inputs(const Graph& a, const Pass& p, const Graph& b, const Pass& q) {
 
 bool same_target(const Graph& a, const Pass& p, const Graph& b, const Pass& q) {
   const GraphImage &x = a.images[static_cast<std::size_t>(p.output)], &y = b.images[static_cast<std::size_t>(q.output)];
-  return x.size == y.size && x.channels == y.channels;
+  return x.size == y.size && x.channels == y.channels && x.precise == y.precise;
 }
 
 std::string pass_difference(const Graph& a, const Pass& p, const Graph& b, const Pass& q) {

@@ -199,7 +199,8 @@ bool same_structure(const Graph& a, const Graph& b) {
   if (!same_conditions(a, b) || !same_histories(a, b)) return false;
   for (std::size_t i = 0; i < a.images.size(); ++i)
     if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer ||
-        a.images[i].channels != b.images[i].channels || !same_data(a.images[i].data, b.images[i].data))
+        a.images[i].channels != b.images[i].channels || a.images[i].precise != b.images[i].precise ||
+        !same_data(a.images[i].data, b.images[i].data))
       return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {
     const Pass &p = a.passes[i], &q = b.passes[i];

@@ -32,6 +32,8 @@ struct GraphImage {
   /// Of an image that a pass makes: 1, 2 or 4. Readers find (r, 0, 0, 1), (r, g, 0, 1) or all four, whatever its pass
   /// says of the others and however many are stored (stored_channels).
   int channels = 4;
+  /// Of an image that a pass makes: full floats, whatever the others between passes are stored in.
+  bool precise = false;
 };
 
 /// A value for a shader parameter: up to 4 components (bool as 0/1).

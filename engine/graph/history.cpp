@@ -69,9 +69,10 @@ const History* history_of_next(const Graph& graph, ImageId image) {
 }
 
 bool is_precise(const Graph& graph, ImageId image) {
-  return std::ranges::any_of(graph.histories, [&](const History& history) {
-    return history.precise && (history.previous == image || history.next == image);
-  });
+  if (image == graph.result) return false;
+  return graph.images[image].precise || std::ranges::any_of(graph.histories, [&](const History& history) {
+           return history.precise && (history.previous == image || history.next == image);
+         });
 }
 
 std::vector<ImageId> images_read(const Graph& graph, const Pass& pass) {
@@ -88,6 +89,7 @@ void drop_unread_histories(Graph& graph) {
   if (graph.histories.empty()) return;
   const std::vector<bool> needed = passes_for(graph, {graph.result});
   std::vector<bool> read(graph.images.size(), false), remove(graph.passes.size(), false);
+  read[graph.result] = true;
   for (std::size_t i = 0; i < graph.passes.size(); ++i)
     if (needed[i])
       for (const auto& input : graph.passes[i].inputs) read[input.image] = true;
@@ -117,9 +119,14 @@ void separate_result(Graph& graph) {
     return std::ranges::find(images, graph.result) != images.end();
   });
   const bool computed = is_computed(graph, graph.result);
-  if (!source && !kept && !read && !computed) return;
+  // Pictures beside the source, and what the frame before made.
+  const bool brought = graph.result != graph.source && graph.images[graph.result].producer < 0;
+  if (!source && !kept && !read && !computed && !brought) return;
+  const History* earlier = history_of_previous(graph, graph.result);
   copy_result(graph, kept       ? kept->effect
+                     : earlier  ? earlier->effect
                      : computed ? graph.passes[graph.images[graph.result].producer].effect
+                     : brought  ? graph.images[graph.result].name
                                 : graph.histories.front().effect);
 }
 
@@ -163,10 +170,8 @@ Hash history_part(const Graph& graph, const History& history) {
   for (std::size_t i = 0; i < part.size(); ++i) {
     if (!part[i]) continue;
     const Pass& pass = graph.passes[i];
-    hasher.add(pass.name)
-        .add(pass.shader)
-        .add(pass.by_workgroups)
-        .add(pass.kind == PassKind::filter ? pass.filter.text() : "");
+    // The numbers of a filter are values, as parameters are: what it made is still what it makes.
+    hasher.add(pass.name).add(pass.shader).add(pass.by_workgroups).add(static_cast<std::uint64_t>(pass.kind));
     for (const auto& [name, value] : pass.constants) hasher.add(name).add(fmt::format("{}", value));
     for (const auto& input : pass.inputs) hasher.add(input.name), add_image(input.image);
   }

@@ -18,7 +18,8 @@ const History* history_of_previous(const Graph& graph, ImageId image);
 /// The history whose `next` this image is, or null.
 const History* history_of_next(const Graph& graph, ImageId image);
 
-/// Whether the image belongs to a history that is kept in full floats.
+/// Whether the image is stored in full floats by itself: GraphImage::precise, or a history is kept so. Never the
+/// result.
 bool is_precise(const Graph& graph, ImageId image);
 
 /// The images that a pass may read: its inputs, and the `first` of each history among them.
@@ -29,8 +30,8 @@ std::vector<ImageId> images_read(const Graph& graph, const Pass& pass);
 void drop_unread_histories(Graph& graph);
 
 /// Makes sure that the result is an image of its own: where a history keeps it or is made of it, or where it is the
-/// source although histories have to be made, a pass that copies it is added; also where a compute pass makes it, since
-/// callers' images are drawn to.
+/// source although histories have to be made, a pass that copies it is added; also where it is another picture of the
+/// frame or what the frame before made, and where a compute pass makes it, since callers' images are drawn to.
 void separate_result(Graph& graph);
 /// Makes the result a copy of what it was, by a pass of its own: everything else then runs as it does behind the last
 /// effect of a stack.
@@ -41,7 +42,7 @@ void copy_result(Graph& graph, const std::string& effect);
 int pre_roll(const Graph& graph);
 
 /// Equal where the part of the graph that makes the history, of the passes of its effect, is the same but for
-/// parameters: its pixels then mean the same.
+/// parameters and the numbers of filters: its pixels then mean the same.
 Hash history_part(const Graph& graph, const History& history);
 
 }  // namespace afterglow

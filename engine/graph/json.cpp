@@ -32,6 +32,7 @@ Json pass_json(const Graph& graph, const Pass& pass) {
   const auto& image = graph.images[pass.output];
   out["output"] = {{"image", image.name}, {"width", image.size.width}, {"height", image.size.height}};
   if (image.channels != 4) out["output"]["channels"] = image.channels;
+  if (image.precise) out["output"]["precise"] = true;
   out["from"] = {{"file", pass.file}, {"line", pass.line}};
   return out;
 }

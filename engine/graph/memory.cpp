@@ -16,12 +16,13 @@ std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config) {
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
     const auto channels = static_cast<std::uint64_t>(stored_channels(graph, plan.transient[i], config));
+    const std::uint64_t bytes = pixels * channels * (is_precise(graph, plan.transient[i]) ? 4 : bytes_per_pixel / 4);
     // Both images of a history have memory of their own.
     if (history_of_next(graph, plan.transient[i])) {
-      kept += 2 * pixels * channels * (is_precise(graph, plan.transient[i]) ? 4 : bytes_per_pixel / 4);
+      kept += 2 * bytes;
       continue;
     }
-    blocks.push_back({pixels * bytes_per_pixel / 4 * channels, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
+    blocks.push_back({bytes, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
   std::uint64_t total = kept + place(blocks, config.share_memory).total;
   // CPU devices may draw a sample pass twice, and mark in 16 bits a pixel what the first draw has done.

@@ -68,6 +68,21 @@ Image resample_columns(const Image& source, int height) {
   return out;
 }
 
+bool is_opaque(const Image& image) {
+  if (image.channels != 4) return false;
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+    if (image.pixels[i] != 1) return false;
+  return true;
+}
+
+/// Weights add up to 1 but for rounding: what is opaque stays so.
+Image resample(const Image& source, Size size) {
+  Image out = resample_columns(resample_rows(source, size.width), size.height);
+  if (is_opaque(source))
+    for (std::size_t i = 3; i < out.pixels.size(); i += 4) out.pixels[i] = 1;
+  return out;
+}
+
 Image nearest(const Image& source, Size size) {
   Image out(size.width, size.height, source.channels);
   for (int y = 0; y < size.height; ++y)
@@ -133,7 +148,7 @@ Rect scaled_window(const Rect& data, const Rect& display, Size target) {
 void scale_picture(Picture& picture, const Scaling& scaling) {
   const Rect data = times(scaled_window(picture.data_window, picture.display_window, scaling.display), scaling.finer);
   const Size size = data.size();
-  picture.color = resample_columns(resample_rows(picture.color, size.width), size.height);
+  picture.color = resample(picture.color, size);
   const float across = static_cast<float>(size.width) / static_cast<float>(picture.data_window.width),
               down = static_cast<float>(size.height) / static_cast<float>(picture.data_window.height);
   for (auto& [name, image] : picture.auxiliary) {
@@ -149,7 +164,7 @@ void scale_picture(Picture& picture, const Scaling& scaling) {
 void shrink_picture(Picture& picture, int finer) {
   if (finer == 1) return;
   const Image& color = picture.color;
-  picture.color = resample_columns(resample_rows(color, color.width / finer), color.height / finer);
+  picture.color = resample(color, {color.width / finer, color.height / finer});
   for (Rect* window : {&picture.data_window, &picture.display_window})
     *window = {window->x / finer, window->y / finer, window->width / finer, window->height / finer};
 }

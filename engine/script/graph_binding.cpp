@@ -82,6 +82,7 @@ int graph_pass(lua_State* lua) {
   request.size = read_size(table, lua);
   request.reach = table.number("reach");
   request.channels = table.number("channels");
+  request.precise = table.boolean("precise").value_or(false);
   if (request.shader.empty() && !table.failed())
     table.fail(failure(fmt::format("{} needs 'shader', the name of a shader", table.what())));
   for (const auto& key : table.keys()) {
@@ -108,11 +109,12 @@ int graph_pass(lua_State* lua) {
 int graph_filter(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:filter { … }");
   TableReader table(lua, 2, call_name(lua, graph, "g:filter"));
-  table.allow({"channels", "filter", "name", "size", "source"}, false);
+  table.allow({"channels", "filter", "name", "precise", "size", "source"}, false);
   FilterRequest request;
   request.name = table.text("name", 80);
   request.size = read_size(table, lua);
   request.channels = table.number("channels");
+  request.precise = table.boolean("precise").value_or(false);
   table.push("source");
   if (const ImageRef* image = to_image(lua, -1))
     request.source = *image;
@@ -370,7 +372,8 @@ int graph_index(lua_State* lua) {
 
 int refuse_change(lua_State* lua) {
   const char* what = to_image(lua, 1) ? "an image" : "the graph";
-  throw failure(fmt::format("{} cannot be changed: {} = {}", what, read_value(lua, 2).text, read_value(lua, 3).shown()));
+  throw failure(
+      fmt::format("{} cannot be changed: {} = {}", what, read_value(lua, 2).text, read_value(lua, 3).shown()));
 }
 
 int image_index(lua_State* lua) {

@@ -107,10 +107,11 @@ int GraphBuilder::channels_of(const Pass& pass, std::optional<double> wanted, in
   return wanted ? static_cast<int>(*wanted) : otherwise;
 }
 
-ImageRef GraphBuilder::add(Pass pass, Size size, int channels) {
+ImageRef GraphBuilder::add(Pass pass, Size size, int channels, bool precise) {
   names_.try_emplace(pass.name, 1);
   pass.output = add_image(pass.name, size, static_cast<int>(graph_.passes.size()));
   graph_.images.back().channels = channels;
+  graph_.images.back().precise = precise;
   graph_.passes.push_back(std::move(pass));
   return ref(graph_.passes.back().output);
 }
@@ -176,7 +177,7 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
            {input.name}, size_text(size));
   }
   const int channels = channels_of(pass, request.channels, 4);
-  return add(std::move(pass), size, channels);
+  return add(std::move(pass), size, channels, request.precise);
 }
 
 std::shared_ptr<const ShaderSource> GraphBuilder::find_shader(const Pass& pass, const std::string& name,
@@ -187,6 +188,18 @@ std::shared_ptr<const ShaderSource> GraphBuilder::find_shader(const Pass& pass, 
   Error error = std::move(shader).error();
   if (error.line > 0) throw ScriptError{std::move(error)};
   fail(pass, error.message, {key}, error.allowed, error.nearest);
+}
+
+std::optional<std::string> GraphBuilder::fixed_alpha(const ImageRef& made) const {
+  const int producer = graph_.images[static_cast<std::size_t>(made.id)].producer;
+  if (producer < 0) return {};
+  const Pass& pass = graph_.passes[static_cast<std::size_t>(producer)];
+  if (pass.shader.empty() || pass.straight) return {};
+  const auto shader = shaders_.find(pass.shader);
+  if (!shader || !(*shader)->fixed_alpha_line) return {};
+  return fmt::format(
+      "{}:{}: effect '{}' makes an alpha that is a number; return the one that came in, effects behind it divide by it",
+      (*shader)->path.string(), *(*shader)->fixed_alpha_line, pass.effect);
 }
 
 /// The two ways to make an image must be given the same.
@@ -332,7 +345,7 @@ ImageRef GraphBuilder::filter(FilterRequest request, const CallPlace& place) {
   pass.filter = std::move(request.filter);
   const int channels =
       channels_of(pass, request.channels, graph_.images[static_cast<std::size_t>(request.source->id)].channels);
-  return add(std::move(pass), request.size.value_or(request.source->size), channels);
+  return add(std::move(pass), request.size.value_or(request.source->size), channels, request.precise);
 }
 
 }  // namespace afterglow::script

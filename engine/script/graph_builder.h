@@ -40,12 +40,13 @@ struct PassRequest {
   std::optional<Size> size;
   std::optional<double> reach;      ///< see Pass::reach
   std::optional<double> channels;   ///< see GraphImage::channels
+  bool precise = false;             ///< see GraphImage::precise
   std::vector<Argument> arguments;  ///< "source" among them
 };
 
 /// Keys of a pass besides the inputs and parameters of its shader.
 inline const std::vector<std::string>& pass_keys() {
-  static const std::vector<std::string> keys{"channels", "compute", "name", "reach", "shader", "size"};
+  static const std::vector<std::string> keys{"channels", "compute", "name", "precise", "reach", "shader", "size"};
   return keys;
 }
 
@@ -54,6 +55,7 @@ struct FilterRequest {
   std::optional<ImageRef> source;
   std::optional<Size> size;
   std::optional<double> channels;  ///< default: those of the source
+  bool precise = false;
   Filter filter;
 };
 
@@ -105,6 +107,8 @@ class GraphBuilder {
   std::optional<ImageRef> input(const std::string& name);
   /// An image that the look brings along; the same data is the same image.
   ImageRef data(const std::string& name, std::shared_ptr<const ImageData> pixels);
+  /// What an author should know about the alpha of what an effect made; none: nothing.
+  std::optional<std::string> fixed_alpha(const ImageRef& made) const;
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
   const std::optional<std::string>& skip_reason() const { return skip_reason_; }
 
@@ -121,7 +125,7 @@ class GraphBuilder {
   ImageRef ref(ImageId id) const { return {build_, id, graph_.images[static_cast<std::size_t>(id)].size}; }
   ImageId add_image(std::string name, Size size, int producer);
   Pass start(std::string name, const std::optional<std::string>& given, const CallPlace& place);
-  ImageRef add(Pass pass, Size size, int channels);
+  ImageRef add(Pass pass, Size size, int channels, bool precise);
   /// What is wrong with `channels = …`; none: nothing.
   static std::optional<std::string> wrong_channels(std::optional<double> wanted);
   int channels_of(const Pass& pass, std::optional<double> wanted, int otherwise) const;
@@ -129,7 +133,7 @@ class GraphBuilder {
   void check_size(const Pass& pass, const Size& size) const;
   History* history_of(const ImageRef& image);
   bool depends_on_history(const History& history) const;
-  ImageId copy_of(ImageId image, const CallPlace& place);
+  ImageId copy_of(ImageId image, int channels, const CallPlace& place);
   [[noreturn]] void fail_history(const History& history, const std::string& message, KeyPath key = {},
                                  std::string allowed = {}) const;
   [[noreturn]] void fail(const Pass& pass, const std::string& message, KeyPath key = {}, std::string allowed = {},

@@ -88,13 +88,13 @@ bool GraphBuilder::depends_on_history(const History& history) const {
   return depends[history.next];
 }
 
-ImageId GraphBuilder::copy_of(ImageId image, const CallPlace& place) {
+ImageId GraphBuilder::copy_of(ImageId image, int channels, const CallPlace& place) {
   Pass pass = start("keep", {}, place);
   pass.kind = PassKind::filter;
   pass.filter.interpolation = Interpolation::nearest;
   pass.inputs.push_back({"source", image, false});
   const auto at = static_cast<std::size_t>(image);
-  return add(std::move(pass), graph_.images[at].size, graph_.images[at].channels).id;
+  return add(std::move(pass), graph_.images[at].size, channels, graph_.images[at].precise).id;
 }
 
 void GraphBuilder::keep(const ImageRef& image, const ImageRef& next, const CallPlace& place) {
@@ -109,14 +109,14 @@ void GraphBuilder::keep(const ImageRef& image, const ImageRef& next, const CallP
                  fmt::format("it is {}×{}, but is to keep {}×{}", image.size.width, image.size.height, next.size.width,
                              next.size.height),
                  {}, fmt::format("{}×{}", image.size.width, image.size.height));
-  const int channels = graph_.images[static_cast<std::size_t>(image.id)].channels;
-  if (const int given = graph_.images[static_cast<std::size_t>(next.id)].channels; given > channels)
-    fail_history(*history, fmt::format("it has {} channels, but is to keep an image of {}", channels, given), {},
-                 fmt::format("channels = {} of what makes the image", channels));
   // What is kept lies in memory of its own: inputs do not, and two histories cannot share one image.
-  const bool needs_copy = graph_.images[static_cast<std::size_t>(next.id)].producer < 0 ||
-                          is_computed(graph_, next.id) || history_of_next(graph_, next.id);
-  history->next = needs_copy ? copy_of(next.id, place) : next.id;
+  const GraphImage& given = graph_.images[static_cast<std::size_t>(next.id)];
+  const bool needs_copy = given.producer < 0 || is_computed(graph_, next.id) || history_of_next(graph_, next.id);
+  const int channels = graph_.images[static_cast<std::size_t>(image.id)].channels;
+  if (given.channels > channels && !needs_copy)
+    fail_history(*history, fmt::format("it has {} channels, but is to keep an image of {}", channels, given.channels),
+                 {}, fmt::format("channels = {} of what makes the image", channels));
+  history->next = needs_copy ? copy_of(next.id, std::min(channels, given.channels), place) : next.id;
   if (history->pre_roll < 0) history->pre_roll = depends_on_history(*history) ? kUsualPreRoll : 1;
   std::erase_if(open_histories_, [&](const auto& open) { return open.first == history->name; });
 }

@@ -69,6 +69,7 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
     graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
     return image;
   }
+  if (const auto warning = graph.fixed_alpha(image)) diagnostics.warn_once(*warning, *warning);
   // What an idle effect makes is its source; that over the source is made all the same.
   if (const auto limit = idle_limit(lua, run, source)) graph.add_idle(source, image, *limit);
   const ImageRef seen = composite(lua, run, graph, source, image);

@@ -358,7 +358,7 @@ class Assembler {
     AFTERGLOW_CHECK(texts_.add(source, scanned, prefix, values, readers));
     const std::string function = prefix + info_of(kind).entry;
     if (source.interface.done)
-      sample_rest(prefix + std::string(kDoneFunction), function);
+      sample_rest(prefix + std::string(kDoneFunction), function, source.keeps_state);
     else if (info_of(kind).begins && kernel_.config.rows > 1)
       begin_rows(function);
     else if (info_of(kind).begins)
@@ -375,9 +375,10 @@ class Assembler {
     row_ += fmt::format("  ag_color = {}(ag_at);\n", entry);
   }
 
-  /// The colour of a pixel that may be done without the shader's entry.
-  void sample_rest(const std::string& done, const std::string& entry) {
-    out_.two_draws = kernel_.config.two_draws && kernel_.config.rows == 1 && !out_.workgroup;
+  /// The colour of a pixel that may be done without the shader's entry. `keeps_state`: what is asked first may leave
+  /// something in a variable for the entry, which a draw of its own would not find.
+  void sample_rest(const std::string& done, const std::string& entry, bool keeps_state) {
+    out_.two_draws = kernel_.config.two_draws && kernel_.config.rows == 1 && !out_.workgroup && !keeps_state;
     every_row("vec4 ag_color{0} = vec4(0.0);");
     if (!out_.two_draws) {
       every_row("if (!" + done + "(ag_pixel{0}, ag_color{0})) ag_color{0} = " + entry + "(ag_pixel{0});");

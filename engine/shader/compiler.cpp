@@ -13,11 +13,11 @@
 #include "core/cache_folder.h"
 #include "core/file.h"
 #include "shader/cpu/defeat_uniform_inlining.h"
-#include "shader/guard_loops.h"
 #include "shader/cpu/interleave.h"
 #include "shader/cpu/merge_equal.h"
 #include "shader/give_values.h"
 #include "shader/glsl.h"
+#include "shader/guard_loops.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
 #include "shader/loop_places.h"
@@ -119,9 +119,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);
-  if (assembled.workgroup) {
-    AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
-  }
+  AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
   if (desc.config.rows > 1) {
     auto in_turns = interleave_rows(kernel.spirv, kTogether);
     kernel.rows_pay = in_turns.has_value();

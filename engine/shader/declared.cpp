@@ -21,9 +21,6 @@ bool is_any(const Token& token, const std::array<std::string_view, kCount>& word
 
 using Tokens = std::span<const Token* const>;
 
-bool opens(const Token& token) { return token.is("(") || token.is("[") || token.is("{"); }
-bool closes(const Token& token) { return token.is(")") || token.is("]") || token.is("}"); }
-
 /// Position behind the bracket that closes the one at `at`.
 std::size_t after_closing(Tokens tokens, std::size_t at) {
   int depth = 0;
@@ -131,7 +128,10 @@ bool ends_with_return(Tokens body) {
 }  // namespace
 
 void find_unset_result(const Token& type, const Token& name, Tokens body, std::vector<Unset>& out) {
-  if (!type.is_identifier() || type.is("void") || body.empty() || ends_with_return(body)) return;
+  if (!type.is_identifier() || type.is("void") || body.size() < 2 || ends_with_return(body)) return;
+  // A statement that has no end: the compiler says so of what the author wrote.
+  const Token& last = *body[body.size() - 2];
+  if (!last.is(";") && !last.is("{") && !last.is("}")) return;
   out.push_back({std::string(name.text), name.line, Unset::Kind::result, body.back()->offset, std::string(type.text)});
 }
 

@@ -61,6 +61,10 @@ constexpr std::array kForeign{
 constexpr std::array<std::string_view, 4> kOfWorkgroups{"gl_LocalInvocationID", "gl_LocalInvocationIndex",
                                                         "gl_WorkGroupID", "gl_WorkGroupSize"};
 
+constexpr std::array<std::string_view, 9> kOfLevels{
+    "textureProj",           "textureProjLod", "textureProjGrad",   "textureProjOffset", "textureProjLodOffset",
+    "textureProjGradOffset", "textureGrad",    "textureGradOffset", "textureLodOffset"};
+
 }  // namespace
 
 std::string_view in_glsl(std::string_view word) {
@@ -80,6 +84,8 @@ std::string_view why_not(std::string_view name) {
   if (name.starts_with("dFd") || name.starts_with("fwidth") || name == "textureQueryLod")
     return "pixels that lie beside each other need not be made beside each other; read both by `fetch` in a sample "
            "shader";
+  if (std::ranges::count(kOfLevels, name) > 0)
+    return "images have one level, and positions two numbers: write texture(image, position from 0 to 1)";
   return {};
 }
 

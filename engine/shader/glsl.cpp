@@ -81,6 +81,8 @@ std::optional<LogLine> parse_line(std::string_view text) {
   std::string message = trim(original_names(text));
   if (message.starts_with("'' : ")) message.erase(0, 5);
   if (const auto colon = message.find("' : "); colon != std::string::npos) message.replace(colon, 4, "': ");
+  if (message.find("expecting COMMA or SEMICOLON") != std::string::npos)
+    message = "a ';' is missing before this: " + trim(message);
   out.message = shortened(trim(message));
   if (out.message.ends_with('.')) out.message.pop_back();  // "'half': Reserved word."
   const auto quote = out.message.find('\'', 1);

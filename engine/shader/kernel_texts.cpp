@@ -14,11 +14,17 @@ AssembledKernel::UnsetVariable::Role role_of(Unset::Kind kind) {
   return kind == Unset::Kind::argument ? Role::argument : kind == Unset::Kind::result ? Role::result : Role::variable;
 }
 
+/// Functions of GLSL that are the prelude's: a sampler interpolates or not, as the device is told for the engine's own
+/// reads.
+NameMap names_of_prelude() {
+  return {{"texture", {"ag_texture"}}, {"textureLod", {"ag_texture"}}, {"textureOffset", {"ag_texture_offset"}}};
+}
+
 }  // namespace
 
 Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scanned, const std::string& prefix,
                               const std::vector<std::string>& constants, const StorageReaders& readers) {
-  NameMap names;
+  NameMap names = names_of_prelude();
   std::vector<std::size_t> seen;  // include of the source → library of the kernel
   for (const auto& include : source.includes) {
     AFTERGLOW_TRY(const std::size_t index, library(include, seen));
@@ -57,7 +63,7 @@ Result<std::size_t> KernelTexts::library(const ShaderSource::Include& include,
     if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses)
       return i;
   AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, include.path.string(), ScanAs::library));
-  NameMap names;
+  NameMap names = names_of_prelude();
   for (const auto use : added.uses) see(libraries_[use], names);
   added.names = scanned.names;
   see(added, names);

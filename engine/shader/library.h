@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -36,8 +37,9 @@ struct ShaderSource {
       global_names;    ///< identifiers and macros that the file defines at file scope (renamed when shaders are fused)
   Hash hash;           ///< of text and includes
   bool loops = false;  ///< it or a library of it has a loop
-  bool open_loops = false;   ///< one of them is no `for`: it never becomes straight code
-  bool keeps_state = false;  ///< it or a library of it has variables at file scope that functions may write
+  bool open_loops = false;              ///< one of them is no `for`: it never becomes straight code
+  bool keeps_state = false;             ///< it or a library of it has variables at file scope that functions may write
+  std::optional<int> fixed_alpha_line;  ///< where it returns an alpha that is a number, if it returns nothing else
 
   std::vector<std::filesystem::path> files() const;  ///< path and those of the includes
 };

@@ -123,9 +123,11 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
 }
 
 std::string original_names(std::string_view message) {
-  constexpr std::string_view kMarks = "slr";  // of a stage, a library, an input that is read as storage
+  constexpr std::string_view kMarks = "slr";           // of a stage, a library, an input that is read as storage
+  constexpr std::string_view kTexture = "ag_texture";  // what texture() becomes
   std::string out;
   for (std::size_t i = 0; i < message.size();) {
+    if (message.substr(i).starts_with(kTexture)) i += kTexture.find('t');
     if (message.substr(i, 3) == "ag_" && i + 4 < message.size() && kMarks.find(message[i + 3]) != kMarks.npos) {
       std::size_t end = i + 4;
       while (end < message.size() && message[end] >= '0' && message[end] <= '9') ++end;

@@ -432,8 +432,10 @@ class ShaderScanner {
 
   /// Inputs and parameters are keys of g:pass{…}; its own keys cannot be their names.
   Result<void> pass_key(const std::string& name, int line, bool source_is_taken) const {
-    if (name == "shader" || name == "compute" || name == "name" || name == "size" ||
-        (name == "source" && source_is_taken))
+    if (name == "source" && source_is_taken)
+      return fail(line, "'source' is what apply gets as its first argument; leave the uniform out");
+    static const std::set<std::string_view> kKeys{"channels", "compute", "name", "reach", "shader", "size"};
+    if (kKeys.contains(name))
       return fail(line, fmt::format("'{}' is a key of g:pass itself; choose another name", name));
     return {};
   }

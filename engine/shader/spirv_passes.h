@@ -32,8 +32,9 @@ bool inlines_quickly(const Module& module);
 /// Nothing when a pass fails.
 std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Module& module);
 
-/// Every index is held within its array, as robustBufferAccess says of buffers: what a driver for CPUs takes from
-/// memory that workgroups share lies within the process. Errors: other (no module of GLSL's memory model).
+/// Every index is held within its array, vector or matrix, as robustBufferAccess says of buffers: what lies beyond
+/// differs between ways of execution, and a driver for CPUs takes it from the memory of the process. Errors: other (no
+/// module of GLSL's memory model).
 Result<Words> with_held_indices(const Words& spirv);
 
 /// Values in place of functions, their arguments and variables, straight code in place of loops of a few turns, and

@@ -26,6 +26,10 @@ struct Token {
   std::size_t end() const { return offset + text.size(); }
 };
 
+/// Of brackets.
+inline bool opens(const Token& token) { return token.is("(") || token.is("[") || token.is("{"); }
+inline bool closes(const Token& token) { return token.is(")") || token.is("]") || token.is("}"); }
+
 /// What authors may write at most. The compiler recurses over the text, so nesting is what could crash it.
 inline constexpr std::size_t kMaxShaderBytes = 256u << 10;  ///< one file
 inline constexpr std::size_t kMaxTokens = 64u << 10;        ///< one file

@@ -59,8 +59,105 @@ void press_by_enter(Context& context) {
   }
 }
 
-/// Later backends look the letter up themselves.
-int imgui_key(const InputEvent& event) { return IMGUI_VERSION_NUM >= 18700 ? event.physical : event.code; }
+#if IMGUI_VERSION_NUM >= 18900
+
+/// Keys that fields, lists and navigation know, and modifiers by themselves.
+ImGuiKey imgui_key(int key) {
+  struct Range {
+    int first, last;  // of GLFW
+    ImGuiKey begin;
+  };
+  static constexpr Range kRanges[] = {{GLFW_KEY_A, GLFW_KEY_Z, ImGuiKey_A},
+                                      {GLFW_KEY_0, GLFW_KEY_9, ImGuiKey_0},
+                                      {GLFW_KEY_KP_0, GLFW_KEY_KP_9, ImGuiKey_Keypad0},
+                                      {GLFW_KEY_F1, GLFW_KEY_F12, ImGuiKey_F1}};
+  for (const auto& range : kRanges)
+    if (key >= range.first && key <= range.last) return static_cast<ImGuiKey>(range.begin + (key - range.first));
+  switch (key) {
+    case GLFW_KEY_TAB:
+      return ImGuiKey_Tab;
+    case GLFW_KEY_LEFT:
+      return ImGuiKey_LeftArrow;
+    case GLFW_KEY_RIGHT:
+      return ImGuiKey_RightArrow;
+    case GLFW_KEY_UP:
+      return ImGuiKey_UpArrow;
+    case GLFW_KEY_DOWN:
+      return ImGuiKey_DownArrow;
+    case GLFW_KEY_PAGE_UP:
+      return ImGuiKey_PageUp;
+    case GLFW_KEY_PAGE_DOWN:
+      return ImGuiKey_PageDown;
+    case GLFW_KEY_HOME:
+      return ImGuiKey_Home;
+    case GLFW_KEY_END:
+      return ImGuiKey_End;
+    case GLFW_KEY_INSERT:
+      return ImGuiKey_Insert;
+    case GLFW_KEY_DELETE:
+      return ImGuiKey_Delete;
+    case GLFW_KEY_BACKSPACE:
+      return ImGuiKey_Backspace;
+    case GLFW_KEY_SPACE:
+      return ImGuiKey_Space;
+    case GLFW_KEY_ENTER:
+      return ImGuiKey_Enter;
+    case GLFW_KEY_KP_ENTER:
+      return ImGuiKey_KeypadEnter;
+    case GLFW_KEY_ESCAPE:
+      return ImGuiKey_Escape;
+    case GLFW_KEY_LEFT_CONTROL:
+      return ImGuiKey_LeftCtrl;
+    case GLFW_KEY_RIGHT_CONTROL:
+      return ImGuiKey_RightCtrl;
+    case GLFW_KEY_LEFT_SHIFT:
+      return ImGuiKey_LeftShift;
+    case GLFW_KEY_RIGHT_SHIFT:
+      return ImGuiKey_RightShift;
+    case GLFW_KEY_LEFT_ALT:
+      return ImGuiKey_LeftAlt;
+    case GLFW_KEY_RIGHT_ALT:
+      return ImGuiKey_RightAlt;
+    case GLFW_KEY_LEFT_SUPER:
+      return ImGuiKey_LeftSuper;
+    case GLFW_KEY_RIGHT_SUPER:
+      return ImGuiKey_RightSuper;
+    default:
+      return ImGuiKey_None;
+  }
+}
+
+/// The backend asks the window which modifiers are held: now, and not when the key went down.
+void feed_key(GLFWwindow*, const InputEvent& event) {
+  ImGuiIO& io = ImGui::GetIO();
+  struct Modifier {
+    int bit, left, right;
+    ImGuiKey key;
+  };
+  static constexpr Modifier kModifiers[] = {
+      {GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, static_cast<ImGuiKey>(ImGuiMod_Ctrl)},
+      {GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT, static_cast<ImGuiKey>(ImGuiMod_Shift)},
+      {GLFW_MOD_ALT, GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT, static_cast<ImGuiKey>(ImGuiMod_Alt)},
+      {GLFW_MOD_SUPER, GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER, static_cast<ImGuiKey>(ImGuiMod_Super)}};
+  for (const auto& modifier : kModifiers) {
+    const bool itself = event.code == modifier.left || event.code == modifier.right;
+    io.AddKeyEvent(modifier.key, itself ? event.down : (event.mods & modifier.bit) != 0);
+  }
+  if (!event.repeat) io.AddKeyEvent(imgui_key(event.code), event.down);
+}
+
+#else
+
+void feed_key(GLFWwindow* window, const InputEvent& event) {
+  const int key = IMGUI_VERSION_NUM >= 18700 ? event.physical : event.code;  // it looks the letter up itself, or not
+  ImGui_ImplGlfw_KeyCallback(window, key, event.scancode,
+                             event.repeat ? GLFW_REPEAT
+                             : event.down ? GLFW_PRESS
+                                          : GLFW_RELEASE,
+                             event.mods);
+}
+
+#endif
 
 }  // namespace
 
@@ -130,11 +227,7 @@ void Interface::feed(const InputEvent& event) {
       ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
       break;
     case Kind::key:
-      ImGui_ImplGlfw_KeyCallback(window_, imgui_key(event), event.scancode,
-                                 event.repeat ? GLFW_REPEAT
-                                 : event.down ? GLFW_PRESS
-                                              : GLFW_RELEASE,
-                                 event.mods);
+      feed_key(window_, event);
       break;
     case Kind::text:
       ImGui_ImplGlfw_CharCallback(window_, event.text);

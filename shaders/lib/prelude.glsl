@@ -50,6 +50,20 @@ ivec2 image_size(sampler2D image) { return textureSize(image, 0); }
 
 vec4 ag_texel(sampler2D image, ivec2 pixel) { return texelFetch(image, pixel, 0); }
 
+vec4 fetch_linear(sampler2D image, vec2 position);  // below
+
+// GLSL's texture(image, at) and its kin become these: linear interpolation on every device, `at` from 0 to 1 over the image, reads
+// outside give the edge. Within 1/512 of a texel's centre it is that texel, as texture units have it too: coordinates from 0
+// to 1 are not exact. Images have one level.
+vec4 ag_texture(sampler2D image, vec2 at) {
+  vec2 position = at * vec2(image_size(image)), centre = floor(position) + 0.5;
+  return fetch_linear(image, mix(position, centre, lessThan(abs(position - centre), vec2(1.0 / 512.0))));
+}
+vec4 ag_texture(sampler2D image, vec2 at, float level) { return ag_texture(image, at); }
+vec4 ag_texture_offset(sampler2D image, vec2 at, ivec2 texels) {
+  return ag_texture(image, at + vec2(texels) / vec2(image_size(image)));
+}
+
 // One texel, exactly as stored.
 vec4 fetch(sampler2D image, ivec2 pixel) { return ag_texel(image, clamp(pixel, ivec2(0), image_size(image) - 1)); }
 

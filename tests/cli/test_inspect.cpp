@@ -113,6 +113,49 @@ TEST_F(Inspect, CheckLoadsNoImageLibraries) {
   EXPECT_THAT(outcome.out, Not(HasSubstr("libOpenImageIO")));
 }
 
+/// A third of 1920 is whole, a third of 1279 is not.
+TEST_F(Inspect, CheckTriesOddSizes) {
+  write(
+      "effects/third.lua",
+      "local fx = require \"afterglow\"\nreturn fx.effect { name = \"third\", doc = \"T.\", at = \"post_process\", "
+      "order = 50, build = function(g, s, source)\n  local small = g:pass { shader = \"third/same\", source = source, "
+      "size = { source.width / 3, source.height } }\n"
+      "  return g:pass { shader = \"third/same\", source = small, size = source }\nend }\n");
+  write("shaders/third/same.glsl",
+        "uniform sampler2D source;\nvec4 sample_at(ivec2 pixel) { return fetch(source, pixel); }\n");
+  write("third.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.third {} }\n");
+  const Outcome outcome = run({"check", "third.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("pictures of 1279x719 pixels: "));
+  EXPECT_THAT(outcome.err, HasSubstr("effects/third.lua:3: "));
+  EXPECT_THAT(run({"check", "look.lua"}).err, Not(HasSubstr("pictures of")));
+}
+
+/// What effects behind it divide by.
+TEST_F(Inspect, CheckTellsOfAnAlphaThatIsANumber) {
+  const auto said = [&](const std::string& glsl, const std::string& more = "") {
+    write("effects/plain.lua",
+          "local fx = require \"afterglow\"\nreturn fx.effect { name = \"plain\", doc = \"P.\", at = \"post_process\", "
+          "order = 50, " +
+              more + "build = function(g, s, source) return g:pass { shader = \"plain/it\", source = source } end }\n");
+    write("shaders/plain/it.glsl", glsl);
+    write("plain.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.plain {}, fx.tone_mapping {} }\n");
+    const Outcome outcome = run({"check", "plain.lua"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(said("vec4 apply(vec4 color) {\n  return vec4(color.rgb * 2.0, 1.0);\n}\n"),
+              HasSubstr("shaders/plain/it.glsl:2: effect 'plain' makes an alpha that is a number"));
+  EXPECT_THAT(said("vec4 apply(vec4 color) { return vec4(color.rgb * 2.0, 1.0); }\n", "alpha = \"straight\", "),
+              testing::IsEmpty())
+      << "the engine's";
+  EXPECT_THAT(said("vec4 apply(vec4 color) { return vec4(color.rgb * 2.0, color.a); }\n"), testing::IsEmpty());
+  EXPECT_THAT(said("vec4 apply(vec4 color) {\n  if (color.a == 0.0) return vec4(0.0, 0.0, 0.0, 0.0);\n"
+                   "  return color * 2.0; }\n"),
+              testing::IsEmpty())
+      << "where there is nothing";
+}
+
 TEST_F(Inspect, CheckReportsShadowedBuiltIns) {
   write("effects/tone_mapping.lua",
         "local fx = require \"afterglow\"\n"

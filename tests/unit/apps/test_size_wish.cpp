@@ -72,6 +72,15 @@ TEST(ScalePicture, MakesEachPixelTheMeanOfItsArea) {
   }
 }
 
+TEST(ScalePicture, WhatIsOpaqueStaysSo) {
+  for (const Size size : {Size{123, 77}, Size{333, 187}, Size{700, 394}, Size{7, 5}}) {
+    Picture picture = ramp(320, 180);
+    for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4) picture.color.pixels[i] = 1;
+    scale_picture(picture, {size});
+    for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4) ASSERT_EQ(picture.color.pixels[i], 1);
+  }
+}
+
 TEST(ScalePicture, InterpolatesWhereItEnlarges) {
   Picture picture = ramp(2, 1);
   scale_picture(picture, {{4, 1}});

@@ -172,6 +172,29 @@ TEST_F(FewChannels, OnlyWhatIsStoredIsLookedAt) {
 }
 
 /// The result and what the next frame gets are the caller's and the frames': four channels, with what readers find.
+/// Full floats for one image, where the others are half floats.
+TEST_F(FewChannels, APreciseImageIsNotHalved) {
+  shader("up", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return 1e6 * fetch(source, p); }\n");
+  shader("down", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return 1e-6 * fetch(source, p); }\n");
+  const Size size{37, 21};
+  const std::vector<float> source(static_cast<std::size_t>(size.area()) * 4, 1.0f);
+  for (const int channels : {1, 4})
+    for (const bool precise : {false, true})
+      for (ExecutionConfig config : {ExecutionConfig{}, ExecutionConfig{.storage_reads = true, .rows = 4},
+                                     ExecutionConfig{.dispatched = true}}) {
+        config.storage = Storage::fp16;
+        GraphBuilder b(size);
+        const ImageId up = b.sample("up", "up", size, {{"source", b.source()}});
+        Graph graph = b.finish(b.sample("down", "down", size, {{"source", up}}));
+        graph.images[static_cast<std::size_t>(up)].precise = precise;
+        graph.images[static_cast<std::size_t>(up)].channels = channels;
+        const auto out = run(graph, {{"source", {source.data(), size, 4}}},
+                             {.config = config, .inputs_are_storage = true, .worth = {0, 0}, .result_stored = true});
+        ASSERT_FALSE(out.pixels.empty());
+        EXPECT_NEAR(out.pixels[0], precise ? 1 : 0.065504f, 1e-3f) << execution_name(config) << channels;
+      }
+}
+
 TEST_F(FewChannels, TheResultHasFour) {
   const Size size{7, 3};
   const auto pixels = noise(size, 11);

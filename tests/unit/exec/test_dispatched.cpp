@@ -81,7 +81,9 @@ TEST_F(Dispatched, CodesFlagsAndRegionsToo) {
       const auto a = run(graph, inputs, drawn), b = run(graph, inputs, options);
       EXPECT_TRUE(a.flagged == b.flagged && a.unorm8 == b.unorm8) << rows << unorm8;
       ASSERT_EQ(a.pixels.size(), b.pixels.size());
-      if (!unorm8) EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)), 0);
+      if (!unorm8) {
+        EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)), 0);
+      }
       for (const Rect part : {Rect{0, 0, 1, 1}, Rect{37, 21, 30, 9}, Rect{96, 50, 5, 7}}) {
         options.region = part;
         const auto c = run(graph, inputs, options);
@@ -96,6 +98,61 @@ TEST_F(Dispatched, CodesFlagsAndRegionsToo) {
         options.region.reset();
       }
     }
+}
+
+/// Beyond an array, a vector or a matrix lies its last element, before it the first.
+TEST_F(Dispatched, IndicesAreHeldWithinTheirArrays) {
+  shader("beyond",
+         "const float kTable[4] = float[4](1.0, 2.0, 3.0, 4.0);\nuniform sampler2D source;\n"
+         "vec4 sample_at(ivec2 p) {\n  float own[3];\n  for (int i = 0; i < 3; ++i) own[i] = float(10 * i);\n"
+         "  vec4 v = vec4(5.0, 6.0, 7.0, 8.0);\n  int at = p.x - 2;\n"
+         "  return vec4(kTable[at], own[at], v[at], 1.0) + 0.0 * fetch(source, p);\n}\n");
+  const Size size{9, 2};
+  GraphBuilder b(size);
+  const Graph graph = b.finish(b.sample("beyond", "beyond", size, {{"source", b.source()}}));
+  const auto pixels = noise(size, 34);
+  const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
+  for (const bool dispatched : {false, true}) {
+    const auto out = run(graph, inputs, dispatched ? stored({.rows = 4}) : ProgramOptions{.worth = {0, 0}});
+    ASSERT_FALSE(out.pixels.empty());
+    for (int x = 0; x < size.width; ++x) {
+      const auto held = [&](int last) { return static_cast<float>(std::clamp(x - 2, 0, last)); };
+      const float* pixel = &out.pixels[static_cast<std::size_t>(x) * 4];
+      EXPECT_EQ(pixel[0], 1 + held(3)) << x << dispatched;
+      EXPECT_EQ(pixel[1], 10 * held(2)) << x << dispatched;
+      EXPECT_EQ(pixel[2], 5 + held(3)) << x << dispatched;
+    }
+  }
+}
+
+/// texture() interpolates, whatever the engine's own sampler does.
+TEST_F(Dispatched, TextureIsLinearInEveryWay) {
+  shader(
+      "half",
+      "uniform sampler2D source;\nvec4 sample_at(ivec2 p) {\n  vec2 size = vec2(textureSize(source, 0));\n"
+      "  vec4 at = texture(source, (vec2(p) + 0.5) / size), between = textureLod(source, (vec2(p) + vec2(1.0, 0.5)) / "
+      "size, 0.0);\n"
+      "  return vec4(at.r, between.r, textureOffset(source, (vec2(p) + 0.5) / size, ivec2(-1, 0)).r, 1.0);\n}\n");
+  const Size size{37, 3};
+  GraphBuilder b(size);
+  const Graph graph = b.finish(b.sample("half", "half", size, {{"source", b.source()}}));
+  std::vector<float> ramp(static_cast<std::size_t>(size.area()) * 4, 1.0f);
+  const auto value = [&](int x) { return static_cast<float>(std::clamp(x, 0, size.width - 1) % 7); };
+  for (std::size_t i = 0; i < ramp.size(); i += 4) ramp[i] = value(static_cast<int>(i) / 4 % size.width);
+  const std::map<std::string, HostImage> inputs{{"source", {ramp.data(), size, 4}}};
+  for (const ExecutionConfig& config :
+       {ExecutionConfig{}, ExecutionConfig{.hardware_filter = true}, ExecutionConfig{.storage_reads = true, .rows = 4},
+        ExecutionConfig{.hardware_filter = true, .dispatched = true}}) {
+    ProgramOptions options = config.dispatched ? stored(config) : ProgramOptions{.config = config, .worth = {0, 0}};
+    const auto out = run(graph, inputs, options);
+    ASSERT_FALSE(out.pixels.empty());
+    for (int x = 0; x < size.width; ++x) {
+      const float* pixel = &out.pixels[static_cast<std::size_t>(x) * 4];
+      EXPECT_EQ(pixel[0], value(x)) << "a texel's centre";
+      EXPECT_NEAR(pixel[1], (value(x) + value(x + 1)) / 2, 1e-5f);
+      EXPECT_NEAR(pixel[2], value(x - 1), 1e-5f);
+    }
+  }
 }
 
 /// Who gives an image that cannot be stored to gets it drawn; what draws and what stores may stand side by side.

@@ -63,6 +63,29 @@ TEST_F(TwoDraws, EachPixelComesFromTheFunctionThatItShould) {
     }
 }
 
+/// What is asked first may leave something for what is done then.
+TEST_F(TwoDraws, WhatOneFunctionLeavesInAVariableTheOtherFinds) {
+  shader("kept", R"(uniform sampler2D source;
+vec4 centre = vec4(0.0);
+bool done_at(ivec2 pixel, out vec4 color) {
+  color = centre = fetch(source, pixel);
+  return color.r <= 0.5;
+}
+vec4 sample_at(ivec2 pixel) { return 4.0 * centre; }
+)");
+  const Size size{101, 57};
+  GraphBuilder builder(size);
+  const Graph graph = builder.finish(builder.sample("kept", "kept", size, {{"source", builder.source()}}));
+  const std::vector<float> source = noise(size, 12);
+  for (const bool reference : {false, true}) {
+    ProgramOptions options;
+    options.reference = reference;
+    const HostResult result = run(graph, {{"source", {.pixels = source.data(), .size = size}}}, options);
+    for (std::size_t i = 0; i < source.size(); ++i)
+      ASSERT_EQ(result.pixels[i], (source[i / 4 * 4] <= 0.5f ? 1 : 4) * source[i]) << reference;
+  }
+}
+
 /// Kernels of other sizes share the image that tells their draws apart; what follows in a kernel is done to all pixels.
 TEST_F(TwoDraws, SeveralKernelsOneBehindTheOther) {
   const Size first{101, 57}, second{37, 90};

@@ -46,7 +46,7 @@ TEST_F(BuildMessages, UnknownNames) {
   EXPECT_EQ(gain("high = source, gian = 1"),
             kAt5 +
                 "shader 'gain' has no input or parameter 'gian'; allowed: source, "
-                "high, gain, tint, steps, on, taps, channels, compute, name, reach, shader, size; "
+                "high, gain, tint, steps, on, taps, channels, compute, name, precise, reach, shader, size; "
                 "did you mean 'gain'?");
   EXPECT_THAT(gain("high = source, chanels = 1"), HasSubstr("did you mean 'channels'?"));
   EXPECT_EQ(error("return g:pass { shader = \"plane\", source = source }").substr(0, 75),
@@ -168,10 +168,11 @@ TEST_F(BuildMessages, Filters) {
             "effects/probe.lua:4: error: pass 'glow.filter' of effect 'probe': needs 'source', an image");
   EXPECT_EQ(error("return g:filter { source = 5, filter = {} }"),
             "effects/probe.lua:4: error: effect 'probe': g:filter: source = 5 is not an image");
-  EXPECT_EQ(error("return g:filter { source = source, filter = {}, siez = 1 }"),
-            "effects/probe.lua:4: error: effect 'probe': g:filter has no 'siez'; allowed: channels, filter, name, "
-            "size, source; "
-            "did you mean 'size'?");
+  EXPECT_EQ(
+      error("return g:filter { source = source, filter = {}, siez = 1 }"),
+      "effects/probe.lua:4: error: effect 'probe': g:filter has no 'siez'; allowed: channels, filter, name, precise, "
+      "size, source; "
+      "did you mean 'size'?");
   EXPECT_EQ(error("local fx = require \"afterglow\"\nreturn fx.filters.gausian_vertical()"),
             "effects/probe.lua:5: error: unknown filter \"gausian_vertical\"; allowed: area, bilinear, box, bspline, "
             "gaussian_halving, "
@@ -201,9 +202,8 @@ TEST_F(BuildMessages, TheGraphAndImages) {
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");
   EXPECT_EQ(error("source.width = 5"), "effects/probe.lua:4: error: an image cannot be changed: width = 5");
   EXPECT_EQ(error("g.frame = 5"), "effects/probe.lua:4: error: the graph cannot be changed: frame = 5");
-  EXPECT_EQ(
-      error("return g:pass(5)"),
-      "effects/probe.lua:4: error: effect 'probe': g:pass takes a table, not 5; allowed: g:pass { … }");
+  EXPECT_EQ(error("return g:pass(5)"),
+            "effects/probe.lua:4: error: effect 'probe': g:pass takes a table, not 5; allowed: g:pass { … }");
   EXPECT_EQ(error("return g:pass { shader = \"plain\", source = source,\n name = \"a b\" }"),
             "effects/probe.lua:5: error: pass 'glow.plain' of effect 'probe': 'a b' cannot be the name of a pass; "
             "allowed: 1 to 64 letters, digits, '_', '-', '[' and ']'");

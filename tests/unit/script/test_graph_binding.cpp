@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "graph/history.h"
 #include "scene.h"
 
 namespace afterglow::test {
@@ -156,6 +157,35 @@ TEST_F(Binding, Channels) {
   other = graph;
   other.images[static_cast<std::size_t>(graph.source)].channels = 1;
   EXPECT_FALSE(validate(other));  // pictures are what they are
+}
+
+/// An input has no pass that could make less of it.
+TEST_F(Binding, AnInputIsKeptInAsManyChannelsAsAreWanted) {
+  const Graph graph = this->graph(R"(
+    local before = g:history { name = "before", size = source, channels = 1 }
+    g:keep(before, source)
+    return g:pass { shader = "edges", depth = before, source = source })");
+  ASSERT_EQ(graph.histories.size(), 1u);
+  EXPECT_EQ(graph.images[static_cast<std::size_t>(graph.histories[0].next)].channels, 1);
+  EXPECT_TRUE(validate(graph));
+}
+
+TEST_F(Binding, Precise) {
+  const Graph graph = this->graph(R"(
+    local a = g:pass { shader = "lone", depth = source, size = source, precise = true }
+    local b = g:filter { source = a, filter = {}, precise = true }
+    local c = g:filter { source = b, filter = {} }
+    return g:pass { shader = "edges", depth = c, source = source, precise = true })");
+  const auto precise = [&](std::size_t pass) { return is_precise(graph, graph.passes[pass].output); };
+  ASSERT_EQ(graph.passes.size(), 4u);
+  EXPECT_TRUE(precise(0));
+  EXPECT_TRUE(precise(1));
+  EXPECT_FALSE(precise(2));
+  EXPECT_FALSE(precise(3)) << "the result is what whoever runs it wants";
+  Graph other = graph;
+  other.images[static_cast<std::size_t>(graph.passes[0].output)].precise = false;
+  EXPECT_FALSE(same_structure(graph, other));
+  EXPECT_THAT(to_json(graph), testing::HasSubstr("\"precise\": true"));
 }
 
 TEST_F(Binding, FilterLibrary) {

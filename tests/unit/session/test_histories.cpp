@@ -316,6 +316,40 @@ TEST_F(HistoriesOfFrames, AStackThatTakesAnothersPlaceGoesOn) {
   EXPECT_EQ(out.pixels[0], 4.75f);
 }
 
+/// The picture of the frame before, and nothing else: a delay.
+TEST_F(HistoriesOfFrames, WhatTheFrameBeforeMadeMayBeTheResult) {
+  write("effects/delay.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"delay\", at = \"post_process\", order = 100, "
+        "build = function(g, s, source)\n  local before = g:history { first = source }\n  g:keep(before, source)\n"
+        "  return before\nend }\n");
+  look("fx.delay {}");
+  const auto session = open();
+  EXPECT_EQ(run(*session, 1, 1), 1);
+  EXPECT_EQ(run(*session, 2, 5), 1);
+  EXPECT_EQ(run(*session, 3, 7), 5);
+  look("fx.delay {}, fx.other { factor = 4 }");
+  const auto more = open();
+  EXPECT_EQ(run(*more, 1, 1), 4);
+  EXPECT_EQ(run(*more, 2, 5), 4);
+}
+
+/// The numbers of a filter move with time as values do: what it adds up goes on.
+TEST_F(HistoriesOfFrames, TheyGoOnWhereFiltersMove) {
+  write("effects/drift.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"drift\", at = \"post_process\", order = 100, "
+        "settings = { by = fx.float { default = 1, doc = \"b\" } }, build = function(g, s, source)\n"
+        "  local before = g:history { first = { 16, 0, 0, 1 }, size = source }\n"
+        "  local moved = g:filter { source = before, filter = { taps = { { 0, 0, s.by } } } }\n"
+        "  local now = g:pass { shader = \"t/add\", source = source, before = moved, keep = 0.5 }\n"
+        "  g:keep(before, now)\n  return now\nend }\n");
+  look("fx.drift { by = function(t) return t.frame == 3 and 2 or 1 end }");
+  const auto session = open();
+  EXPECT_EQ(run(*session, 1, 1), 9);
+  EXPECT_EQ(run(*session, 2, 1), 5.5f);
+  EXPECT_EQ(run(*session, 3, 1), 6.5f);
+  EXPECT_EQ(run(*session, 4, 1), 4.25f);
+}
+
 /// A trace has a program of its own, which is used for one frame after the other as long as the graph is the same.
 TEST_F(HistoriesOfFrames, ATraceReadsThoseOfItsFrame) {
   look("fx.sized { small = function(t) return t.frame == 2 end }");

@@ -197,7 +197,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"bool done_at(ivec2 p, out vec4 c) { c = vec4(0.0); return true; }\n" + kEnd, 1,
             "done_at stands beside sample_at alone"},
         Bad{"uniform float size;\n" + kEnd, 1, "'size' is a key of g:pass"},
-        Bad{"vec4 apply(vec4 c, vec4 source) { return c; }\n", 1, "'source' is a key of g:pass"},
+        Bad{"vec4 apply(vec4 c, vec4 source) { return c; }\n", 1, "'source' is what apply gets as its first argument"},
+        Bad{"uniform float reach;\n" + kEnd, 1, "'reach' is a key of g:pass"},
         Bad{"int 5;\n" + kEnd, 1, "a declaration was expected"}, Bad{"float a, ;\n" + kEnd, 1, "a name was expected"},
         Bad{"struct S\n" + kEnd, 2, "'{' was expected after 'struct'"}));
 

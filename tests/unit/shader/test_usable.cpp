@@ -111,6 +111,8 @@ TEST(Usable, WhatBeginnersWriteIsAnsweredWithWhatToWrite) {
   EXPECT_THAT(sample("return fetch(source, vec2(pixel));"), HasSubstr("it is fetch(sampler2D image, ivec2 pixel)"));
   EXPECT_THAT(sample("v = 2.0; return vec4(v);"),
               HasSubstr("x.glsl:4: error: a uniform cannot be written to; copy it into a variable"));
+  EXPECT_THAT(said_of("vec4 apply(vec4 c) {\n  return c * 2.0\n}\n"),
+              AllOf(HasSubstr("x.glsl:3: error: a ';' is missing before this"), testing::Not(HasSubstr("VEC4"))));
   EXPECT_THAT(said_of("vec4 apply(vec4 c) { return c; }\nfloat f(float x);\nfloat g(float x) { return x; }\n"), "ok");
   EXPECT_THAT(
       said_of("float g(float x) { return x; }\nfloat f(float x);\nvec4 apply(vec4 c) { return vec4(f(c.r)); }\n"),
