@@ -119,7 +119,6 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);
-  AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
   if (desc.config.rows > 1) {
     auto in_turns = interleave_rows(kernel.spirv, kTogether);
     kernel.rows_pay = in_turns.has_value();
@@ -132,6 +131,8 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
     kernel.rows_pay =
         !merged.loops && static_cast<double>(merged.reads_before) > kWorthwhile * static_cast<double>(merged.reads);
   }
+  // Behind what makes straight code of loops: most indices are constants then.
+  AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
   if (desc.config.defeat_uniform_inlining) kernel.spirv = defeat_uniform_inlining(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;

@@ -147,6 +147,10 @@ Result<Words> with_held_indices(const Words& spirv) {
   Words out;
   if (!optimizer.Run(spirv.data(), spirv.size(), &out, options))
     return Error{ErrorKind::other, "indices cannot be held within their arrays: " + fault};
+  // What is held looks less like a step through an array to drivers, which then leave loops that they unrolled.
+  if (out == spirv) return out;
+  auto module = parse(out);
+  if (module && mark_short_loops(*module)) out = module->join();
   return out;
 }
 
