@@ -70,9 +70,9 @@ const History* history_of_next(const Graph& graph, ImageId image) {
 
 bool is_precise(const Graph& graph, ImageId image) {
   if (image == graph.result) return false;
-  return graph.images[image].precise || std::ranges::any_of(graph.histories, [&](const History& history) {
-           return history.precise && (history.previous == image || history.next == image);
-         });
+  for (const auto& history : graph.histories)
+    if (history.previous == image || history.next == image) return history.precise;
+  return graph.images[image].precise;
 }
 
 std::vector<ImageId> images_read(const Graph& graph, const Pass& pass) {

@@ -18,8 +18,8 @@ const History* history_of_previous(const Graph& graph, ImageId image);
 /// The history whose `next` this image is, or null.
 const History* history_of_next(const Graph& graph, ImageId image);
 
-/// Whether the image is stored in full floats by itself: GraphImage::precise, or a history is kept so. Never the
-/// result.
+/// Whether the image is stored in full floats by itself: of what a history keeps the history says so, of others
+/// GraphImage::precise. Never the result.
 bool is_precise(const Graph& graph, ImageId image);
 
 /// The images that a pass may read: its inputs, and the `first` of each history among them.

@@ -22,10 +22,13 @@ Pass guard_of(const Graph& graph, ImageId image, NanPolicy policy) {
   return pass;
 }
 
-/// Appends a pass; returns its image.
-ImageId append(Graph& graph, Pass pass, Size size) {
+/// Appends a pass whose image is stored as `like`; returns its image.
+ImageId append(Graph& graph, Pass pass, const GraphImage& like) {
   pass.output = static_cast<ImageId>(graph.images.size());
-  graph.images.push_back({pass.name, size, static_cast<int>(graph.passes.size())});
+  GraphImage image = like;
+  image.name = pass.name;
+  image.producer = static_cast<int>(graph.passes.size());
+  graph.images.push_back(std::move(image));
   graph.passes.push_back(std::move(pass));
   return graph.passes.back().output;
 }
@@ -69,7 +72,7 @@ GuardedGraph guard(const Graph& graph, NanPolicy policy) {
     made.passes.push_back(std::move(pass));
     out.made.push_back(from.output);
     mended[static_cast<std::size_t>(from.output)] =
-        append(made, guard_of(graph, from.output, policy), graph.images[from.output].size);
+        append(made, guard_of(graph, from.output, policy), graph.images[from.output]);
   }
   made.result = mended[static_cast<std::size_t>(graph.result)];
   for (auto& history : made.histories) {
