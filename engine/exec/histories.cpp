@@ -9,6 +9,7 @@
 
 #include "core/memory_limit.h"
 #include "core/text.h"
+#include "exec/few_channels.h"
 #include "graph/history.h"
 
 namespace afterglow {
@@ -53,6 +54,14 @@ Result<Histories::Kept> Histories::make(const Device& device, const std::string&
     AFTERGLOW_TRY(kept.images[static_cast<std::size_t>(i)], GpuImage::create(device, desc));
   }
   return kept;
+}
+
+Histories::Options Histories::options_for(const Device& device, const Graph& graph, const ExecutionConfig& config,
+                                          std::uint64_t max_memory) {
+  return {.half = config.storage == Storage::fp16,
+          .storage = config.storage_reads || config.dispatched,
+          .four_channels = config.four_channels || !holds_few_channels(device, graph, config),
+          .max_memory = max_memory};
 }
 
 Result<void> Histories::fit(const Device& device, const Graph& graph, const Options& options) {

@@ -12,6 +12,7 @@
 #include "core/hash.h"
 #include "gpu/image.h"
 #include "graph/graph.h"
+#include "shader/execution_config.h"
 
 namespace afterglow {
 
@@ -25,6 +26,9 @@ class Histories {
     bool four_channels = false;  ///< whatever the graph says
     std::uint64_t max_memory = 6ull << 30;
   };
+  /// As programs of this graph with this execution find them.
+  static Options options_for(const Device& device, const Graph& graph, const ExecutionConfig& config,
+                             std::uint64_t max_memory);
   /// Makes images for the histories of this graph. Those whose part of the graph, size and format are as before keep
   /// their pixels; others begin anew; what the graph does not have goes. Must not be called while a submission that
   /// uses them is in flight; programs have to be pointed at them afterwards (`images_id`). Errors: device, io (over

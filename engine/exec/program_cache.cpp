@@ -9,7 +9,6 @@
 #include "core/stopwatch.h"
 #include "exec/cpu/driver.h"
 #include "exec/describe.h"
-#include "exec/few_channels.h"
 #include "exec/histories.h"
 #include "exec/idle_programs.h"
 #include "graph/condition.h"
@@ -143,13 +142,10 @@ ProgramOptions ProgramCache::State::program_options() const {
 
 /// What earlier frames handed on stays where it still means the same.
 Result<void> ProgramCache::State::fit_histories() {
-  const bool half = storage() == Storage::fp16 && !options.reference;
-  return histories->fit(device, entries.front().work.graph,
-                        {.half = half,
-                         .storage = options.config.storage_reads || options.config.dispatched,
-                         .four_channels = options.config.four_channels ||
-                                          !holds_few_channels(device, entries.front().work.graph, options.config),
-                         .max_memory = options.max_memory});
+  ExecutionConfig config = options.config;
+  config.storage = options.reference ? Storage::fp32 : storage();
+  const Graph& graph = entries.front().work.graph;
+  return histories->fit(device, graph, Histories::options_for(device, graph, config, options.max_memory));
 }
 
 /// Programs that were not there last, or whose images another one (of a frame that failed, too) has let go, are pointed

@@ -277,11 +277,8 @@ Result<void> Program::State::make_histories() {
   histories = options.histories;
   if (histories) return {};
   histories = std::make_shared<Histories>();
-  return histories->fit(device, graph,
-                        {.half = options.config.storage == Storage::fp16,
-                         .storage = options.config.storage_reads || options.config.dispatched,
-                         .four_channels = options.config.four_channels,
-                         .max_memory = options.max_memory - std::min(options.max_memory, arena.memory().arena)});
+  const std::uint64_t left = options.max_memory - std::min(options.max_memory, arena.memory().arena);
+  return histories->fit(device, graph, Histories::options_for(device, graph, options.config, left));
 }
 
 /// Pixels that kernels make together.

@@ -136,11 +136,8 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
     return Error{ErrorKind::device,
                  fmt::format("adopted device '{}' is not usable: {}", described.info.name, described.info.why_not)};
   }
-  std::uint32_t count = 0;
-  functions.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  functions.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
-  if (adopted.queue_family >= count || !can_draw_and_compute(families[adopted.queue_family])) {
+  const auto families = queue_families(functions, adopted.physical_device);
+  if (adopted.queue_family >= families.size() || !can_draw_and_compute(families[adopted.queue_family])) {
     return Error{ErrorKind::device,
                  fmt::format("adopted queue family {} cannot draw and compute", adopted.queue_family)};
   }
@@ -176,11 +173,7 @@ Result<void> Device::finish() {
   max_allocation_ = limits.maxMemoryAllocationSize;
   functions_.vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 
-  std::uint32_t count = 0;
-  functions_.vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  functions_.vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
-  const std::uint32_t bits = families[queue_family_].timestampValidBits;
+  const std::uint32_t bits = queue_families(functions_, physical_)[queue_family_].timestampValidBits;
   if (properties_.limits.timestampPeriod > 0 && bits > 0) timestamp_mask_ = ~std::uint64_t{0} >> (64 - bits);
 
   const VkPipelineCacheCreateInfo cache{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};

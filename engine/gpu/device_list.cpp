@@ -15,6 +15,14 @@
 
 namespace afterglow {
 
+std::vector<VkQueueFamilyProperties> queue_families(const VulkanFunctions& vk, VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
+}
+
 namespace {
 
 constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";  // its header is one of beta extensions
@@ -73,21 +81,15 @@ bool has_image_robustness_extension(const VulkanFunctions& vk, VkPhysicalDevice 
 }
 
 bool can_compute_alone(const VulkanFunctions& vk, VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  const auto families = queue_families(vk, device);
   return std::ranges::any_of(families, [](const auto& f) { return (f.queueFlags & VK_QUEUE_COMPUTE_BIT) != 0; });
 }
 
 /// The first family with graphics and compute that can present to `surface`, when there is one: one queue does
 /// everything. (A device that draws has a family with both.)
 std::optional<std::uint32_t> graphics_family(const VulkanFunctions& vk, VkPhysicalDevice device, VkSurfaceKHR surface) {
-  std::uint32_t count = 0;
-  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  for (std::uint32_t i = 0; i < count; ++i) {
+  const auto families = queue_families(vk, device);
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
     if (can_draw_and_compute(families[i]) && can_present(vk, device, i, surface)) return i;
   }
   return std::nullopt;

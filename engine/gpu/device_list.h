@@ -18,6 +18,8 @@ struct PhysicalDevice {
   DeviceInfo info;
 };
 
+std::vector<VkQueueFamilyProperties> queue_families(const VulkanFunctions& vk, VkPhysicalDevice device);
+
 /// Whether queues of this family can do all that is recorded.
 inline bool can_draw_and_compute(const VkQueueFamilyProperties& family) {
   constexpr VkQueueFlags kBoth = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
