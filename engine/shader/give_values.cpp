@@ -138,16 +138,19 @@ Words with_zeros(Module module, const Ids& ids) {
   return module.join();
 }
 
-/// Whether elements are stored by an index that is no constant: which of them, nobody knows.
+/// Whether elements are stored, and some read or stored by an index that is no constant: which of them, nobody knows.
 bool is_filled_by_index(const Module& module, std::uint32_t variable, const std::set<std::uint32_t>& constants) {
   std::set<std::uint32_t> chains;
+  bool any_index = false, stored = false;
   for (const auto& i : module.code) {
-    if (i.op == spv::OpAccessChain && i.words[3] == variable &&
-        std::any_of(i.words.begin() + 4, i.words.end(), [&](std::uint32_t id) { return !constants.contains(id); }))
+    if (i.op == spv::OpAccessChain && i.words[3] == variable) {
       chains.insert(i.result);
-    if (i.op == spv::OpStore && chains.contains(i.words[1])) return true;
+      any_index |=
+          std::any_of(i.words.begin() + 4, i.words.end(), [&](std::uint32_t id) { return !constants.contains(id); });
+    }
+    stored |= i.op == spv::OpStore && chains.contains(i.words[1]);
   }
-  return false;
+  return any_index && stored;
 }
 
 /// Follows a vector while its components are given one by one.

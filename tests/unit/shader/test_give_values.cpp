@@ -101,6 +101,14 @@ TEST(GiveValues, WhatIsAlwaysGivenIsNotTold) {
                    "  return vec4(y[3], y[2], y[1], y[0]);\n}\n")
                   .warnings,
               IsEmpty());
+  EXPECT_THAT(made("vec4 apply(vec4 color) {\n  float y[3], sum = 0.0;\n  y[0] = 1.0; y[2] = color.r; y[1] = color.g;\n"
+                   "  for (int i = 0; i < 3; ++i) sum += y[i];\n  return vec4(sum);\n}\n")
+                  .warnings,
+              IsEmpty());
+  EXPECT_THAT(made("vec4 apply(vec4 color) {\n  float y[3], sum = 0.0;\n"
+                   "  for (int i = 0; i < 3; ++i) sum += y[i];\n  return vec4(sum);\n}\n")
+                  .warnings,
+              ElementsAre(read_at(2, "y")));
 }
 
 /// Which would take too long to follow: all of them are told.
