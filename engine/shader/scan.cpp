@@ -398,9 +398,11 @@ class ShaderScanner {
       error.allowed = entry_signatures();
       std::vector<std::string> entries = split(entry_names(), ',');
       for (auto& entry : entries) entry = trim(entry);
+      // Shadertoy's, mpv's and a whole shader's.
+      static const std::set<std::string_view> kElsewhere{"mainImage", "hook", "main"};
       for (const auto& name : out_.names) {
         if (name.macro) continue;
-        error.nearest = nearest_name(name.name, entries);
+        error.nearest = kElsewhere.contains(name.name) ? "sample_at" : nearest_name(name.name, entries);
         if (error.nearest.empty()) continue;
         error.line = name.line;
         break;

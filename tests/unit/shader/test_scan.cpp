@@ -206,6 +206,8 @@ INSTANTIATE_TEST_SUITE_P(
     EntryPoints, ScanErrors,
     testing::Values(Bad{"", 0, "defines none of apply, sample_at, compute_at", "vec4 sample_at(ivec2 pixel)"},
                     Bad{"\nvec4 aply(vec4 c) { return c; }", 2, "defines none of", "", "apply"},
+                    Bad{"\nvoid mainImage(out vec4 o, in vec2 at) { o = vec4(at, 0.0, 1.0); }", 2, "defines none of",
+                        "", "sample_at"},
                     Bad{"vec4 sampel_at(ivec2 p) { return vec4(0); }", 1, "defines none of", "", "sample_at"},
                     Bad{kEnd + "vec4 sample_at(ivec2 p) { return vec4(0); }", 2,
                         "one of apply, sample_at, compute_at; the other is at line 1"},
