@@ -43,12 +43,13 @@ Result<void> DataImages::fill(const Device& device, const Graph& graph) {
       return 0;
     };
     AFTERGLOW_CHECK(staging.upload({image.get(), kFormat, data->size}, pack));
+    if (layout_ != VK_IMAGE_LAYOUT_GENERAL) continue;
     barriers.push_back(image_barrier(image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                      VK_IMAGE_LAYOUT_GENERAL));
   }
-  if (layout_ == VK_IMAGE_LAYOUT_GENERAL) {
+  if (!barriers.empty()) {
     AFTERGLOW_TRY(Submitter submitter, Submitter::create(device));
     AFTERGLOW_CHECK(submitter.submit(
         [&](VkCommandBuffer commands) { record_barriers(device, commands, barriers.data(), barriers.size()); }));
