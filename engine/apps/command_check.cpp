@@ -161,6 +161,7 @@ Result<void> run_check(const CheckArguments& arguments, Console& console) {
   auto [shaders, not_compiled] = check_shaders(look);
   auto& [errors, warnings] = shaders;
   for (const auto& warning : warnings) console.diagnostics().warn(warning);
+  for (const auto& warning : check_odd_sizes(look)) console.diagnostics().warn(warning);
   if (!errors.empty()) {
     for (std::size_t i = 0; i + 1 < errors.size(); ++i) console.error(errors[i]);
     return std::move(errors.back());

@@ -116,6 +116,14 @@ LookFindings check_shaders(const Look& look) {
     if (ran > 0) kernels.check(build->graph);
   }
   LookFindings out{std::move(kernels.found), std::move(waiting)};
+  std::set<std::string> seen;
+  std::erase_if(out.shaders.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
+  std::erase_if(out.shaders.warnings, [&](const std::string& warning) { return !seen.insert(warning).second; });
+  return out;
+}
+
+std::vector<std::string> check_odd_sizes(const Look& look) {
+  std::vector<std::string> out;
   for (const Size size : {Size{1279, 719}, Size{321, 181}}) {
     BuildContext context = look.build.context;
     context.size = size;
@@ -123,13 +131,8 @@ LookFindings check_shaders(const Look& look) {
     Diagnostics silent;
     const auto build = look.preset->evaluate(context, silent);
     const auto good = build ? validate(build->graph) : Result<void>(build.error());
-    if (!good)
-      out.shaders.warnings.push_back(
-          fmt::format("pictures of {}x{} pixels: {}", size.width, size.height, good.error().text()));
+    if (!good) out.push_back(fmt::format("pictures of {}x{} pixels: {}", size.width, size.height, good.error().text()));
   }
-  std::set<std::string> seen;
-  std::erase_if(out.shaders.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
-  std::erase_if(out.shaders.warnings, [&](const std::string& warning) { return !seen.insert(warning).second; });
   return out;
 }
 

@@ -35,4 +35,8 @@ struct LookFindings {
 /// the assumed frame leaves out and others may not is looked for in some of those: 2, 3, 5, 9, … 1025.
 LookFindings check_shaders(const Look& look);
 
+/// Builds the look for pictures of two odd sizes, one of them small, without compiling anything: what is wrong there,
+/// as warnings.
+std::vector<std::string> check_odd_sizes(const Look& look);
+
 }  // namespace afterglow

@@ -18,10 +18,11 @@
 namespace afterglow {
 
 struct FrameRunner::State {
-  State(Device& device_in, const FrameImages::Options& options)
-      : device(device_in), images(device_in, options), timer(device_in) {}
+  State(Device& device_in, const FrameImages::Options& options, int place_in)
+      : device(device_in), place(place_in), images(device_in, options), timer(device_in) {}
 
   Device& device;
+  int place;
   FrameImages images;
   bool flags = false;         ///< the last run's result tells of what is not finite
   std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
@@ -91,8 +92,8 @@ FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)
 FrameRunner::~FrameRunner() = default;
 
 Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, const Options& options) {
-  auto state = std::make_unique<State>(
-      device, FrameImages::Options{options.max_memory, options.direct && device.maps_images(), options.whole_staging});
+  const FrameImages::Options images{options.max_memory, options.direct && device.maps_images(), options.whole_staging};
+  auto state = std::make_unique<State>(device, images, options.place);
   AFTERGLOW_TRY(state->submitter, Submitter::create(device));
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }
@@ -119,17 +120,17 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
                   .run = run,
                   .images = images.handles(),
                   .layouts = images.inputs.layouts(),
-                  .bindings = program.bindings()};
+                  .bindings = program.bindings(place)};
   const bool unlike = program.recording() == Program::kUnlikeOthers;
   const int which = unlike ? kOneOff : program.recording();
   std::optional<Recorded> none;
   std::optional<Recorded>& last = unlike ? none : recorded[static_cast<std::size_t>(which)];
   const bool known = timing == KernelTiming::none && last == wanted;
   if (!known) {
-    if (bound != Bound{program.id(), wanted.images, program.bindings()})
-      AFTERGLOW_CHECK(program.bind(images.inputs.bindings(), binding_of(images.result.image())));
-    bound = {program.id(), wanted.images, program.bindings()};
-    wanted.bindings = program.bindings();
+    if (bound != Bound{program.id(), wanted.images, program.bindings(place)})
+      AFTERGLOW_CHECK(program.bind(images.inputs.bindings(), binding_of(images.result.image()), place));
+    bound = {program.id(), wanted.images, program.bindings(place)};
+    wanted.bindings = program.bindings(place);
   }
   last.reset();
   begun->submitted = Clock::now();
@@ -138,7 +139,7 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
                                [&](VkCommandBuffer commands) {
                                  images.inputs.before(program, commands);
                                  if (draws_result) images.result.before(commands);
-                                 program.record(commands, queries, run);
+                                 program.record(commands, queries, run, place);
                                  if (separate) return;
                                  images.inputs.after(commands);
                                  if (draws_result) images.result.after(commands);
@@ -162,7 +163,8 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     if (!run[i]) continue;
     const auto begin = Clock::now();
-    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record_again(commands, i); }, kOneOff);
+    auto done = submitter.submit(
+        [&](VkCommandBuffer commands) { program.record_again(commands, i, VK_NULL_HANDLE, place); }, kOneOff);
     if (done) done = submitter.wait();
     if (!done) {
       Error error = std::move(done).error();
@@ -279,12 +281,12 @@ Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
   AFTERGLOW_CHECK(s.images.prepare(program, usual_inputs(program.graph())));
   s.bound.reset();
   s.images.result.set_writer(0);
-  AFTERGLOW_CHECK(program.bind(s.images.inputs.bindings(), binding_of(s.images.result.image())));
+  AFTERGLOW_CHECK(program.bind(s.images.inputs.bindings(), binding_of(s.images.result.image()), s.place));
   AFTERGLOW_CHECK(s.submitter.submit(
       [&](VkCommandBuffer commands) {
         s.images.inputs.before(program, commands);
         s.images.result.before(commands);
-        program.record_a_pixel_each(commands, backwards);
+        program.record_a_pixel_each(commands, backwards, s.place);
         s.images.inputs.after(commands);
         s.images.result.after(commands);
       },
@@ -356,7 +358,7 @@ Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<s
 
 Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::size_t kernel) {
   State& s = *state_;
-  const State::Bound bound{program.id(), s.images.handles(), program.bindings()};
+  const State::Bound bound{program.id(), s.images.handles(), program.bindings(s.place)};
   if (s.images.result.writer() != program.id() || s.bound != bound || kernel >= program.plan().kernels.size())
     return std::optional<double>();
   const bool draws_result = makes_result(program, kernel);
@@ -370,7 +372,7 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
       [&](VkCommandBuffer commands) {
         s.images.inputs.before(program, commands);
         if (draws_result) s.images.result.before(commands);
-        program.record_again(commands, kernel, queries);
+        program.record_again(commands, kernel, queries, s.place);
         s.images.inputs.after(commands);
         if (draws_result) s.images.result.after(commands);
       },

@@ -31,6 +31,7 @@ class FrameRunner {
     bool direct = true;
     /// Staging buffers hold whole pictures, so that nothing waits for the device between `begin` and `finish`.
     bool whole_staging = false;
+    int place = 0;  ///< its own among those that take turns with a program (Program::bind)
   };
   /// Errors: device.
   static Result<std::unique_ptr<FrameRunner>> create(Device& device, const Options& options);

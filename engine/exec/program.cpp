@@ -47,7 +47,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
     AFTERGLOW_CHECK(state->make_pipelines());
     AFTERGLOW_CHECK(state->make_marks());
     AFTERGLOW_CHECK(state->make_histories());
-    AFTERGLOW_CHECK(state->make_descriptors());
+    AFTERGLOW_CHECK(state->make_place());
     if (state->histories) AFTERGLOW_CHECK(state->use(state->histories));
     if (!state->histories) state->make_commands();
   }
@@ -69,7 +69,7 @@ int Program::recording() const { return state_->begins_anew() ? kUnlikeOthers : 
 std::uint64_t Program::id() const { return state_->serial; }
 const Regions& Program::parts() const { return state_->parts; }
 
-Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
+Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result, int place) {
   State& s = *state_;
   if (s.plan.kernels.empty()) return {};
   const auto fail = [](const std::string& message) { return Error{ErrorKind::other, message}; };
@@ -96,22 +96,23 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   AFTERGLOW_CHECK(add("source", s.graph.source));
   for (const auto& [name, id] : s.graph.auxiliary) AFTERGLOW_CHECK(add(name, id));
   AFTERGLOW_CHECK(s.data.fill(s.device, s.graph));
-  s.inputs = std::move(bound);
-  for (int which = 0; which < s.sets(); ++which) s.write_set(which, [&](ImageId id) { return s.look_at_input(id); });
-  s.result = s.result_rows > 1 ? result.rows : std::vector{result.view};
-  if (s.stores_result()) {
-    const auto stored = [&](ImageId id) {
-      return id == s.graph.result ? State::Seen{result.view, VK_IMAGE_LAYOUT_GENERAL} : State::Seen{};
-    };
-    for (int which = 0; which < s.sets(); ++which) s.write_set(which, stored);
-  }
-  ++s.bindings;
+  while (s.places.size() <= static_cast<std::size_t>(place)) AFTERGLOW_CHECK(s.make_place());
+  State::Place& at = s.places[static_cast<std::size_t>(place)];
+  at.inputs = std::move(bound);
+  at.result = s.result_rows > 1 ? result.rows : std::vector{result.view};
+  const auto look = [&](ImageId id) {
+    return s.stores_result() && id == s.graph.result ? State::Seen{result.view, VK_IMAGE_LAYOUT_GENERAL}
+                                                     : s.look_at_input(at, id);
+  };
+  for (int which = 0; which < s.sets(); ++which) s.write_set(at, which, look);
+  ++at.bindings;
   return {};
 }
 
-void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std::vector<bool>& run) const {
+void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std::vector<bool>& run, int place) const {
   const State& s = *state_;
-  if (!bound()) return;
+  if (!bound(place)) return;
+  const State::Place& at = s.places[static_cast<std::size_t>(place)];
   const std::size_t count = s.plan.kernels.size();
   const auto stamp = [&](std::size_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
@@ -122,11 +123,11 @@ void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std
     s.device.vk().vkCmdResetQueryPool(commands, timestamps, 0, static_cast<std::uint32_t>(count + 1));
   }
   stamp(0);
-  s.begin_recording(commands);
+  s.begin_recording(commands, at);
   if (std::ranges::find(run, false) != run.end())
-    s.record_some(commands, run, stamp);
+    s.record_some(commands, at, run, stamp);
   else
-    s.record_all(commands, stamp);
+    s.record_all(commands, at, stamp);
   s.loops.record(s.device, commands);
 }
 
@@ -144,8 +145,13 @@ std::vector<std::string> Program::warnings() const {
       if (std::ranges::find(all, warning) == all.end()) all.push_back(warning);
   return all;
 }
-bool Program::bound() const { return state_->bindings > 0; }
-int Program::bindings() const { return state_->bindings + state_->uses; }
+bool Program::bound(int place) const {
+  const auto at = static_cast<std::size_t>(place);
+  return at < state_->places.size() && state_->places[at].bindings > 0;
+}
+int Program::bindings(int place) const {
+  return (bound(place) ? state_->places[static_cast<std::size_t>(place)].bindings : 0) + state_->uses;
+}
 VkFormat Program::storage_format() const { return state_->format; }
 const ExecutionConfig& Program::config() const { return state_->options.config; }
 bool Program::flags_non_finite() const { return state_->options.flag_non_finite; }

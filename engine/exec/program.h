@@ -128,36 +128,39 @@ class Program {
   std::uint64_t id() const;
 
   /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
-  /// is `result_format`. Must not be called while a submission is in flight. The first time it submits what the graph
-  /// brings along, and waits. A program whose graph's result is its source does nothing. Errors: other (no such image
-  /// can be bound), device.
+  /// is `result_format`. Frames that take turns, each with images of its own, have a place each (0, 1, …): what is
+  /// recorded for one stays good when another is bound. Must not be called while a submission of that place is in
+  /// flight. The first time it submits what the graph brings along, and waits; each place makes its descriptors the
+  /// first time. A program whose graph's result is its source does nothing. Errors: other (no such image can be bound),
+  /// device.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
-                    const ImageBinding& result);
+                    const ImageBinding& result, int place = 0);
 
   /// Whether `bind` has said which images `record` reads and writes.
-  bool bound() const;
+  bool bound(int place = 0) const;
 
   /// How often images were bound so far, those of histories too. Commands that were recorded before the last time must
   /// not be submitted again.
-  int bindings() const;
+  int bindings(int place = 0) const;
 
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible
   /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL (with
   /// `result_rows` above 1, it and its targets in GENERAL; with `stores_result` in GENERAL, ready to be written by
   /// compute shaders) and is left so. `timestamps`: pool with kernels().size()+1 queries, or null. `run`: as
-  /// `begin_run` said, or empty for all.
-  void record(VkCommandBuffer commands, VkQueryPool timestamps = VK_NULL_HANDLE,
-              const std::vector<bool>& run = {}) const;
+  /// `begin_run` said, or empty for all. Nothing for a place that is not bound.
+  void record(VkCommandBuffer commands, VkQueryPool timestamps = VK_NULL_HANDLE, const std::vector<bool>& run = {},
+              int place = 0) const;
 
   /// Records one kernel once more after a run, as the frame that ran last; every image holds and is laid out after it
   /// what and as it was before. Needs `keep_images`, or that all that ran are recorded again, in their order. The
   /// caller's images as for `record`. `timestamps`: a pool with 2 queries, or null.
-  void record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps = VK_NULL_HANDLE) const;
+  void record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps = VK_NULL_HANDLE,
+                    int place = 0) const;
 
   /// Records one pixel of each kernel: drivers that compile when something is first drawn do so then. As `record` in
   /// the rest, but what images hold is undefined behind it. `backwards`: the last kernel first, where images between
   /// kernels are linear, as those of CPU devices are.
-  void record_a_pixel_each(VkCommandBuffer commands, bool backwards = false);
+  void record_a_pixel_each(VkCommandBuffer commands, bool backwards = false, int place = 0);
 
   const Plan& plan() const;
   const Graph& graph() const;

@@ -10,13 +10,13 @@
 namespace afterglow {
 
 /// Every slot of these sets for which `look` knows an image.
-void Program::State::write_set(int which, const Look& look) const {
+void Program::State::write_set(const Place& place, int which, const Look& look) const {
   for (std::size_t i = 0; i < images.size(); ++i)
     for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
       Seen seen = look(images[i][slot]);
       if (images[i][slot] == plan.kernels[i].output) seen.layout = VK_IMAGE_LAYOUT_GENERAL;  // it is stored to
       if (seen.view != VK_NULL_HANDLE)
-        descriptors.write_image(set_index(which, i), slot, seen.view, seen.layout, sampler.get());
+        place.descriptors.write_image(set_index(which, i), slot, seen.view, seen.layout, sampler.get());
     }
 }
 
@@ -27,9 +27,9 @@ Program::State::Seen Program::State::look_between(ImageId image) const {
   return found ? Seen{found->view(), read_layout()} : Seen{};
 }
 
-Program::State::Seen Program::State::look_at_input(ImageId image) const {
-  const auto found = inputs.find(image);
-  if (found == inputs.end()) return {};
+Program::State::Seen Program::State::look_at_input(const Place& place, ImageId image) const {
+  const auto found = place.inputs.find(image);
+  if (found == place.inputs.end()) return {};
   return {found->second.view, input_layout()};
 }
 
@@ -46,12 +46,18 @@ Program::State::Seen Program::State::look_at_history(ImageId image, int parity) 
 }
 
 /// As the frame that began finds them: histories without a frame before it may have a first image instead.
-Program::State::Seen Program::State::look_in_first_frame(ImageId image) const {
+Program::State::Seen Program::State::look_in_first_frame(const Place& place, ImageId image) const {
   const History* history = history_of_previous(graph, image);
-  if (history && history->first != kNoImage && lacks_previous(*history)) return look_in_first_frame(history->first);
+  if (history && history->first != kNoImage && lacks_previous(*history))
+    return look_in_first_frame(place, history->first);
   if (const Seen seen = look_at_history(image, parity()); seen.view != VK_NULL_HANDLE) return seen;
   if (const Seen seen = look_between(image); seen.view != VK_NULL_HANDLE) return seen;
-  return look_at_input(image);
+  return look_at_input(place, image);
+}
+
+void Program::State::show_histories(const Place& place) const {
+  for (const int parity : {kEven, kOdd})
+    write_set(place, parity, [&](ImageId id) { return look_at_history(id, parity); });
 }
 
 /// Whether some history has nothing of the frame before.
@@ -70,7 +76,7 @@ Result<void> Program::State::use(std::shared_ptr<Histories> given) {
   }
   histories = std::move(given);
   history_images = histories->images_id();
-  for (const int parity : {kEven, kOdd}) write_set(parity, [&](ImageId id) { return look_at_history(id, parity); });
+  for (const Place& place : places) show_histories(place);
   make_commands();
   ++uses;
   return {};

@@ -253,7 +253,8 @@ Result<void> Program::State::make_marks() {
 }
 
 /// Uniform blocks and transient images stay for good; inputs are written by `bind`, histories by `use`.
-Result<void> Program::State::make_descriptors() {
+/// Of one more frame in flight, with what is the same for all of them.
+Result<void> Program::State::make_place() {
   std::vector<SetNeeds> needs;
   for (int which = 0; which < sets(); ++which)
     for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
@@ -262,12 +263,15 @@ Result<void> Program::State::make_descriptors() {
                        .block = {parameters.buffer(), parameters.offset(i), kernel.block_size},
                        .images = descriptor_types(kernel)});
     }
-  AFTERGLOW_TRY(descriptors, Descriptors::create(device, needs));
+  Place place;
+  AFTERGLOW_TRY(place.descriptors, Descriptors::create(device, needs));
   for (int which = 0; which < sets(); ++which)
     for (std::size_t i = 0; i < plan.kernels.size(); ++i)
       if (const auto word = loops.word(i))
-        descriptors.write_buffer(set_index(which, i), needs[i].images.size() - 1, *word);
-  for (int which = 0; which < sets(); ++which) write_set(which, [this](ImageId id) { return look_between(id); });
+        place.descriptors.write_buffer(set_index(which, i), needs[i].images.size() - 1, *word);
+  for (int which = 0; which < sets(); ++which) write_set(place, which, [this](ImageId id) { return look_between(id); });
+  if (histories) show_histories(place);
+  places.push_back(std::move(place));
   return {};
 }
 

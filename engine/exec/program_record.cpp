@@ -65,7 +65,6 @@ void Program::State::make_commands() {
            .rest = pipelines.rest(compiled.index[i]),
            .marks = compiled_of(i).two_draws ? &marks : nullptr,
            .layout = pipelines.layout(compiled_of(i)).pipeline.get(),
-           .set = descriptors.set(set_index(histories ? parity : kEven, i)),
            .targets = std::move(targets),
            .rows = compiled_of(i).rows,
            .target_size = graph.images[output].size,
@@ -82,8 +81,8 @@ void Program::State::make_commands() {
 }
 
 /// Fills the previous images that have neither a frame before them nor a first image.
-void Program::State::begin_recording(VkCommandBuffer commands) const {
-  if (begins_anew()) write_set(kFirst, [this](ImageId id) { return look_in_first_frame(id); });
+void Program::State::begin_recording(VkCommandBuffer commands, const Place& place) const {
+  if (begins_anew()) write_set(place, kFirst, [&](ImageId id) { return look_in_first_frame(place, id); });
   if (!histories) return;
   for (const auto& history : graph.histories) {
     if (history.first != kNoImage || !lacks_previous(history)) continue;
@@ -98,48 +97,45 @@ void Program::State::begin_recording(VkCommandBuffer commands) const {
   }
 }
 
+/// The one that the frame that began reads from.
+VkDescriptorSet Program::State::set_of(const Place& place, std::size_t kernel) const {
+  return place.descriptors.set(set_index(begins_anew() ? kFirst : parity(), kernel));
+}
+
 /// Of a kernel that is recorded by itself: others than in a whole run may stand beside it.
-KernelCommands Program::State::commands_of(std::size_t kernel) const {
+KernelCommands Program::State::commands_alone(std::size_t kernel) const {
   KernelCommands one = kernels[static_cast<std::size_t>(parity())][kernel];
   one.turn_before = one.turn_after = true;
-  if (begins_anew()) one.set = descriptors.set(set_index(kFirst, kernel));
   return one;
 }
 
-void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const {
-  KernelCommands one = commands_of(kernel);
-  one.barriers = std::move(barriers);
-  record_kernel(device, commands, one, result);
-}
-
-void Program::State::record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const {
+void Program::State::record_all(VkCommandBuffer commands, const Place& place,
+                                const std::function<void(std::size_t)>& stamp) const {
   const auto& all = kernels[static_cast<std::size_t>(parity())];
-  const bool anew = begins_anew();
   afterglow::record_barriers(device, commands, begin);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (anew)
-      record_one(commands, i, all[i].barriers);
-    else
-      record_kernel(device, commands, all[i], result);
+    record_kernel(device, commands, all[i], set_of(place, i), place.result);
     stamp(i + 1);
   }
 }
 
-void Program::record_a_pixel_each(VkCommandBuffer commands, bool backwards) {
+void Program::record_a_pixel_each(VkCommandBuffer commands, bool backwards, int place) {
   State& s = *state_;
+  const State::Place& at = s.places[static_cast<std::size_t>(place)];
   const std::size_t count = s.plan.kernels.size();
   for (std::size_t i = 0; i < count; ++i) s.holds(i).reset();
-  s.begin_recording(commands);
+  s.begin_recording(commands, at);
   afterglow::record_barriers(s.device, commands, s.begin);
   for (std::size_t turn = 0; turn < count; ++turn) {
-    KernelCommands one = s.commands_of(backwards && s.linear ? count - 1 - turn : turn);
+    const std::size_t kernel = backwards && s.linear ? count - 1 - turn : turn;
+    KernelCommands one = s.commands_alone(kernel);
     one.part = {0, 0, 1, 1};
-    record_kernel(s.device, commands, one, s.result);
+    record_kernel(s.device, commands, one, s.set_of(at, kernel), at.result);
   }
 }
 
 /// Some kernels: images that the others have made are in the layout for reading already and stay so.
-void Program::State::record_some(VkCommandBuffer commands, const std::vector<bool>& run,
+void Program::State::record_some(VkCommandBuffer commands, const Place& place, const std::vector<bool>& run,
                                  const std::function<void(std::size_t)>& stamp) const {
   Plan some;
   std::vector<std::vector<ImageId>> read;
@@ -160,15 +156,16 @@ void Program::State::record_some(VkCommandBuffer commands, const std::vector<boo
   afterglow::record_barriers(device, commands, linear_ones);
   for (std::size_t i = 0, next = 0; i < run.size(); ++i) {
     if (run[i]) {
-      KernelBarriers before = std::move(barriers[next++]);
-      before.memory = linear;
-      record_one(commands, i, std::move(before));
+      KernelCommands one = commands_alone(i);
+      one.barriers = std::move(barriers[next++]);
+      one.barriers.memory = linear;
+      record_kernel(device, commands, one, set_of(place, i), place.result);
     }
     stamp(i + 1);
   }
 }
 
-void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps) const {
+void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps, int place) const {
   const State& s = *state_;
   const auto stamp = [&](std::uint32_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
@@ -178,7 +175,7 @@ void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQuery
   std::vector<bool> run(s.plan.kernels.size(), false);
   run[kernel] = true;
   stamp(0);
-  s.record_some(commands, run, [&](std::size_t done) {
+  s.record_some(commands, s.places[static_cast<std::size_t>(place)], run, [&](std::size_t done) {
     if (done == kernel + 1) stamp(1);
   });
   // Its readers do not follow.

@@ -49,15 +49,20 @@ struct Program::State {
   KernelPipelines pipelines;  ///< of compiled.unique
   GpuImage marks;             ///< for kernels with two draws, as large as the largest of them
   SamplerHandle sampler;
-  Descriptors descriptors;
+  /// What one frame in flight finds behind its descriptors: see `Program::bind`.
+  struct Place {
+    Descriptors descriptors;  ///< one set for each SetOf and kernel
+    std::map<ImageId, ImageBinding> inputs{};
+    std::vector<VkImageView> result{};
+    int bindings = 0;  ///< of inputs and result
+  };
+  std::vector<Place> places;
   /// By which of a history's two images is the previous one; alike without histories.
   std::array<std::vector<KernelCommands>, 2> kernels;
   KernelBarriers begin;  ///< before the first kernel
-  std::map<ImageId, ImageBinding> inputs;
-  std::vector<VkImageView> result;
   int result_rows = 1;
   bool linear = false;                   ///< images between kernels stay in GENERAL
-  int bindings = 0, uses = 0;            ///< of inputs and result; of histories
+  int uses = 0;                          ///< of histories
   std::shared_ptr<Histories> histories;  ///< null when the graph has none
   std::uint64_t history_images = 0;      ///< Histories::images_id of those that it was pointed at
 
@@ -109,7 +114,7 @@ struct Program::State {
   Result<void> compile(KernelCompiler& compiler, const std::vector<KernelDesc>& descs);
   Result<void> make_pipelines();
   Result<void> make_marks();
-  Result<void> make_descriptors();
+  Result<void> make_place();
   Result<void> make_histories();
 
   // program_reuse.cpp
@@ -124,11 +129,12 @@ struct Program::State {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   };
   using Look = std::function<Seen(ImageId)>;
-  void write_set(int which, const Look& look) const;
+  void write_set(const Place& place, int which, const Look& look) const;
   Seen look_between(ImageId image) const;
-  Seen look_at_input(ImageId image) const;
+  Seen look_at_input(const Place& place, ImageId image) const;
   Seen look_at_history(ImageId image, int parity) const;
-  Seen look_in_first_frame(ImageId image) const;
+  Seen look_in_first_frame(const Place& place, ImageId image) const;
+  void show_histories(const Place& place) const;
   const GpuImage* history_image(ImageId image, int parity) const;
   bool lacks_previous(const History& history) const { return !histories->has_previous(history.name); }
   bool begins_anew() const;
@@ -137,11 +143,11 @@ struct Program::State {
   // program_record.cpp
   VkImage barrier_image(ImageId id, int parity) const;
   void make_commands();
-  void begin_recording(VkCommandBuffer commands) const;
-  KernelCommands commands_of(std::size_t kernel) const;
-  void record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const;
-  void record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const;
-  void record_some(VkCommandBuffer commands, const std::vector<bool>& run,
+  void begin_recording(VkCommandBuffer commands, const Place& place) const;
+  VkDescriptorSet set_of(const Place& place, std::size_t kernel) const;
+  KernelCommands commands_alone(std::size_t kernel) const;
+  void record_all(VkCommandBuffer commands, const Place& place, const std::function<void(std::size_t)>& stamp) const;
+  void record_some(VkCommandBuffer commands, const Place& place, const std::vector<bool>& run,
                    const std::function<void(std::size_t)>& stamp) const;
 };
 

@@ -10,11 +10,11 @@ namespace afterglow {
 
 namespace {
 
-void bind(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel) {
+void bind(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkDescriptorSet set) {
   const bool compute = kernel.group.has_value();
   const VkPipelineBindPoint point = compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
   device.vk().vkCmdBindPipeline(commands, point, kernel.pipeline);
-  device.vk().vkCmdBindDescriptorSets(commands, point, kernel.layout, 0, 1, &kernel.set, 0, nullptr);
+  device.vk().vkCmdBindDescriptorSets(commands, point, kernel.layout, 0, 1, &set, 0, nullptr);
   const std::array<std::int32_t, 4> sizes{kernel.target_size.width, kernel.target_size.height,
                                           kernel.first_image_size.width, kernel.first_image_size.height};
   static_assert(sizeof sizes == kPushConstantBytes);
@@ -36,9 +36,9 @@ void begin_marks(const Device& device, VkCommandBuffer commands, const GpuImage&
 }
 
 /// Every workgroup that makes a pixel of the part.
-void dispatch(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel) {
+void dispatch(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkDescriptorSet set) {
   if (kernel.turn_before) record_compute_turn(device, commands, true);
-  bind(device, commands, kernel);
+  bind(device, commands, kernel, set);
   const auto groups = [](int first, int count, int pixels) {
     const int begin = first / pixels, end = (first + count + pixels - 1) / pixels;
     return std::pair(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin));
@@ -49,7 +49,7 @@ void dispatch(const Device& device, VkCommandBuffer commands, const KernelComman
   if (kernel.turn_after) record_compute_turn(device, commands, false);
 }
 
-void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkDescriptorSet set,
           const std::vector<VkImageView>& result) {
   const auto width = static_cast<std::uint32_t>(kernel.target_size.width);
   const auto height = static_cast<std::uint32_t>((kernel.target_size.height + kernel.rows - 1) / kernel.rows);
@@ -83,7 +83,7 @@ void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& 
   const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
   device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
   device.vk().vkCmdSetScissor(commands, 0, 1, &area);
-  bind(device, commands, kernel);
+  bind(device, commands, kernel, set);
   device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
   if (kernel.rest != VK_NULL_HANDLE) {
     device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.rest);
@@ -94,14 +94,14 @@ void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& 
 
 }  // namespace
 
-void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkDescriptorSet set,
                    const std::vector<VkImageView>& result) {
   device.begin_label(commands, kernel.name);
   record_barriers(device, commands, kernel.barriers);
   if (kernel.group)
-    dispatch(device, commands, kernel);
+    dispatch(device, commands, kernel, set);
   else
-    draw(device, commands, kernel, result);
+    draw(device, commands, kernel, set, result);
   record_barriers(device, commands, kernel.after);
   device.end_label(commands);
 }

@@ -20,7 +20,6 @@ struct KernelCommands {
   VkPipeline rest = VK_NULL_HANDLE;  ///< the second draw of a kernel with two of them, else null
   const GpuImage* marks = nullptr;   ///< with that: the depth image that tells them apart, at least as large
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  VkDescriptorSet set = VK_NULL_HANDLE;
   std::vector<VkImageView> targets;  ///< one for each row that an invocation makes; empty: the result
   int rows = 1;
   Size target_size, first_image_size;
@@ -33,8 +32,8 @@ struct KernelCommands {
   KernelBarriers after;     ///< and behind it
 };
 
-/// `result`: the targets that the program is bound to.
-void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+/// `set`: the images that it reads; `result`: the targets of kernels that make the program's result.
+void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkDescriptorSet set,
                    const std::vector<VkImageView>& result);
 
 }  // namespace afterglow

@@ -41,10 +41,12 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Device& device, const Rendere
   auto state = std::make_unique<State>(device);
   const bool direct = options.direct && device.maps_images();
   state->slots.resize(direct ? 1 : static_cast<std::size_t>(std::max(options.frames, 1)));
-  for (auto& slot : state->slots) {
-    AFTERGLOW_TRY(slot.runner, FrameRunner::create(device, {.max_memory = options.max_memory,
-                                                            .direct = direct,
-                                                            .whole_staging = state->slots.size() > 1}));
+  for (std::size_t i = 0; i < state->slots.size(); ++i) {
+    const FrameRunner::Options own{.max_memory = options.max_memory,
+                                   .direct = direct,
+                                   .whole_staging = state->slots.size() > 1,
+                                   .place = static_cast<int>(i)};
+    AFTERGLOW_TRY(state->slots[i].runner, FrameRunner::create(device, own));
   }
   return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
 }

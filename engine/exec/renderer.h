@@ -93,8 +93,7 @@ class Renderer {
   struct Counters {
     int images = 0, buffers = 0, recordings = 0;
   };
-  Counters counters()
-      const;  ///< objects made and commands recorded so far; steady frames leave images and buffers alone
+  Counters counters() const;  ///< objects made and commands recorded so far; steady frames leave them alone
 
  private:
   struct State;

@@ -44,12 +44,6 @@ struct PassRequest {
   std::vector<Argument> arguments;  ///< "source" among them
 };
 
-/// Keys of a pass besides the inputs and parameters of its shader.
-inline const std::vector<std::string>& pass_keys() {
-  static const std::vector<std::string> keys{"channels", "compute", "name", "precise", "reach", "shader", "size"};
-  return keys;
-}
-
 struct FilterRequest {
   std::optional<std::string> name;
   std::optional<ImageRef> source;

@@ -21,16 +21,6 @@ bool is_any(const Token& token, const std::array<std::string_view, kCount>& word
 
 using Tokens = std::span<const Token* const>;
 
-/// Position behind the bracket that closes the one at `at`.
-std::size_t after_closing(Tokens tokens, std::size_t at) {
-  int depth = 0;
-  for (; at < tokens.size(); ++at) {
-    if (opens(*tokens[at])) ++depth;
-    if (closes(*tokens[at]) && --depth == 0) return at + 1;
-  }
-  return at;
-}
-
 void skip_sizes(Tokens tokens, std::size_t& at) {
   while (at < tokens.size() && tokens[at]->is("[")) at = after_closing(tokens, at);
 }

@@ -77,4 +77,9 @@ const char* glsl_name(ParamType type) {
   return "";
 }
 
+const std::vector<std::string>& pass_keys() {
+  static const std::vector<std::string> keys{"channels", "compute", "name", "precise", "reach", "shader", "size"};
+  return keys;
+}
+
 }  // namespace afterglow

@@ -95,6 +95,10 @@ struct ShaderInterface {
   bool done = false;                   ///< a sample shader that defines kDoneFunction too
 };
 
+/// Keys of a script's `g:pass { … }` beside the inputs and parameters of its shader, which may have none of these
+/// names.
+const std::vector<std::string>& pass_keys();
+
 /// What a sample shader may define beside its entry: where it is true, its colour is the pixel, and `sample_at` has
 /// nothing to do.
 inline constexpr std::string_view kDoneFunction = "done_at";

@@ -81,17 +81,6 @@ class ShaderScanner {
   }
   int line() const { return at_ < code_.size() ? code_[at_]->line : code_.empty() ? 1 : code_.back()->line; }
 
-  /// Position after the bracket that closes the one at `position`. The tokenizer has checked the balance.
-  std::size_t after_closing(std::size_t position) const {
-    int depth = 0;
-    for (; position < code_.size(); ++position) {
-      const auto& t = *code_[position];
-      if (t.is("(") || t.is("[") || t.is("{")) ++depth;
-      if ((t.is(")") || t.is("]") || t.is("}")) && --depth == 0) return position + 1;
-    }
-    return position;
-  }
-
   Result<void> declaration() {
     if (token().is(";")) {
       ++at_;
@@ -107,7 +96,7 @@ class ShaderScanner {
         has_layout = true;
         layout = at_;
         if (!token(1).is("(")) return fail(t, "layout needs (…)");
-        at_ = after_closing(at_ + 1) - 1;
+        at_ = after_closing(code_, at_ + 1) - 1;
       } else if (t.is("const")) {
         is_const = true;
       } else if (t.is("uniform")) {
@@ -137,7 +126,7 @@ class ShaderScanner {
       return error;
     }
     ++at_;  // the type
-    while (token().is("[")) at_ = after_closing(at_);
+    while (token().is("[")) at_ = after_closing(code_, at_);
     if (!token().is_identifier()) return fail(line(), "a declaration was expected here");
     if (token(1).is("(")) return function();
     return variables(is_const);
@@ -147,7 +136,7 @@ class ShaderScanner {
     const int begin = line();
     while (at_ < code_.size() && !token().is(";")) {
       if (token().is("(") || token().is("[") || token().is("{")) {
-        at_ = after_closing(at_);
+        at_ = after_closing(code_, at_);
       } else {
         ++at_;
       }
@@ -284,7 +273,7 @@ class ShaderScanner {
       AFTERGLOW_CHECK(add_name(name, false));
       ++at_;
       const bool array = token().is("[");
-      if (array) at_ = after_closing(at_);
+      if (array) at_ = after_closing(code_, at_);
       if (token().is("[")) return fail(name, fmt::format("'{}': shared arrays have one dimension", name.text));
       if (token().is("="))
         return fail(name, fmt::format("'{}': a shared variable begins as zeros and takes no other value", name.text));
@@ -302,7 +291,7 @@ class ShaderScanner {
       ++at_;
     }
     if (!token().is("{")) return fail(line(), "'{' was expected after 'struct'");
-    at_ = after_closing(at_);
+    at_ = after_closing(code_, at_);
     if (token().is(";")) {
       ++at_;
       return {};
@@ -326,7 +315,7 @@ class ShaderScanner {
         expects_name = false;
         ++at_;
       } else if (token().is("(") || token().is("[") || token().is("{")) {
-        at_ = after_closing(at_);
+        at_ = after_closing(code_, at_);
       } else {
         has_value = has_value || token().is("=");
         expects_name = token().is(",");
@@ -345,12 +334,12 @@ class ShaderScanner {
     const Token name = token();
     const Token result = *code_[at_ - 1];
     const std::size_t arguments = at_ + 1;
-    at_ = after_closing(arguments);
+    at_ = after_closing(code_, arguments);
     const bool body = token().is("{");
     if (!body && !token().is(";")) return fail(name, fmt::format("'{{' or ';' was expected after {}(…)", name.text));
     const std::size_t arguments_end = at_ - 1;
     const std::size_t begin = at_;
-    at_ = body ? after_closing(at_) : at_ + 1;
+    at_ = body ? after_closing(code_, at_) : at_ + 1;
     if (body) {
       const auto statements = std::span(code_).subspan(begin, at_ - begin);
       find_unset(std::span(code_).subspan(arguments + 1, arguments_end - arguments - 1), statements, out_.unset);
@@ -436,8 +425,7 @@ class ShaderScanner {
   Result<void> pass_key(const std::string& name, int line, bool source_is_taken) const {
     if (name == "source" && source_is_taken)
       return fail(line, "'source' is what apply gets as its first argument; leave the uniform out");
-    static const std::set<std::string_view> kKeys{"channels", "compute", "name", "reach", "shader", "size"};
-    if (kKeys.contains(name))
+    if (std::ranges::find(pass_keys(), name) != pass_keys().end())
       return fail(line, fmt::format("'{}' is a key of g:pass itself; choose another name", name));
     return {};
   }

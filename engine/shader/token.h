@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "core/result.h"
@@ -29,6 +30,24 @@ struct Token {
 /// Of brackets.
 inline bool opens(const Token& token) { return token.is("(") || token.is("[") || token.is("{"); }
 inline bool closes(const Token& token) { return token.is(")") || token.is("]") || token.is("}"); }
+
+/// Position behind the bracket that closes the one at `at`, among tokens or pointers to them. `tokenize` has checked
+/// the balance.
+template <typename Tokens>
+std::size_t after_closing(const Tokens& tokens, std::size_t at) {
+  const auto token = [&](std::size_t i) -> const Token& {
+    if constexpr (std::is_pointer_v<typename Tokens::value_type>)
+      return *tokens[i];
+    else
+      return tokens[i];
+  };
+  int depth = 0;
+  for (; at < tokens.size(); ++at) {
+    if (opens(token(at))) ++depth;
+    if (closes(token(at)) && --depth == 0) return at + 1;
+  }
+  return at;
+}
 
 /// What authors may write at most. The compiler recurses over the text, so nesting is what could crash it.
 inline constexpr std::size_t kMaxShaderBytes = 256u << 10;  ///< one file

@@ -30,14 +30,14 @@ Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& comp
   const KernelCommands commands{.name = name,
                                 .pipeline = out.pipelines_.pipeline(0),
                                 .layout = layout.pipeline.get(),
-                                .set = out.descriptors_.set(0),
                                 .targets = {target.view},
                                 .target_size = target.size,
                                 .first_image_size = source.size,
                                 .part = {0, 0, target.size.width, target.size.height},
                                 .barriers = {.images = {again(target)}}};
-  AFTERGLOW_TRY(out.work_, TimedWork::create(
-                               device, [&](VkCommandBuffer buffer) { record_kernel(device, buffer, commands, {}); }));
+  AFTERGLOW_TRY(out.work_, TimedWork::create(device, [&](VkCommandBuffer buffer) {
+                  record_kernel(device, buffer, commands, out.descriptors_.set(0), {});
+                }));
   return out;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Frames in flight: what comes out is what comes out one at a time, in the same order, whatever overlaps.
+#include <fmt/format.h>
+
 #include "exec/calibration.h"
 #include "renderer_test.h"
 
@@ -53,22 +55,51 @@ TEST_F(RendererTest, ADeviceIsMadeToStage) {
   }
 }
 
+/// The picture times `gain`, and beside it what the frame before showed.
+Graph trail(Size size, double gain) {
+  GraphBuilder builder(size);
+  const ImageId before = builder.auxiliary("before", size);
+  const ImageId now = builder.pixel("gain", "test/gain", builder.source(), {}, {{"gain", number(gain)}});
+  const ImageId sum = builder.pixel("sum", "test/add", now, {{"other", before}});
+  Graph graph = builder.finish(builder.pixel("offset", "test/offset", sum, {}, {{"by", number(0)}}));
+  graph.auxiliary.clear();  // no host gives it
+  graph.histories.push_back({.name = "past", .effect = "", .previous = before, .next = sum});
+  return graph;
+}
+
+/// Images, buffers and commands: each frame in flight has its own, which stay good when another frame has run.
 TEST_F(RendererTest, SteadyFramesMakeNothingNew) {
-  const auto programs = cache();
-  const auto ring = renderer(2);
+  shader("test/add", "vec4 apply(vec4 color, vec4 other) { return vec4(color.rgb + other.rgb, color.a); }\n");
   const auto pixels = noise(kSize, 1);
-  HostResult out;
-  Renderer::Counters steady;
-  for (int i = 0; i < 10; ++i) {
-    if (ring->in_flight() == 2) {
-      ASSERT_TRUE(ring->collect(out));
+  for (const bool history : {false, true})
+    for (const int frames : {1, 2, 3}) {
+      SCOPED_TRACE(fmt::format("history: {}, in flight: {}", history, frames));
+      const auto programs = cache();
+      const auto ring = renderer(frames);
+      int collected = 0;
+      float sum = 0;
+      const auto collect = [&] {
+        HostResult out;
+        ASSERT_TRUE(ring->collect(out));
+        const auto gain = static_cast<float>(++collected);
+        sum = history ? sum + gain * pixels[0] : gain * pixels[0];
+        EXPECT_FLOAT_EQ(out.pixels[0], sum) << collected;
+      };
+      Renderer::Counters steady;
+      for (int i = 0; i < 18; ++i) {
+        if (ring->in_flight() == frames) collect();
+        if (i == 9) steady = ring->counters();
+        const double gain = i + 1;
+        RenderRequest one = request(*programs, history ? trail(kSize, gain) : graph(gain), pixels);
+        one.work.frame = i + 1;
+        ASSERT_TRUE(ring->submit(std::move(one)));
+      }
+      while (ring->in_flight() > 0) collect();
+      EXPECT_EQ(ring->counters().images, steady.images);
+      EXPECT_EQ(ring->counters().buffers, steady.buffers);
+      EXPECT_EQ(ring->counters().recordings, steady.recordings);
+      EXPECT_EQ(programs->programs(), 1);
     }
-    if (i == 4) steady = ring->counters();
-    ASSERT_TRUE(ring->submit(request(*programs, graph(i + 1), pixels)));
-  }
-  EXPECT_EQ(ring->counters().images, steady.images);
-  EXPECT_EQ(ring->counters().buffers, steady.buffers);
-  EXPECT_EQ(programs->programs(), 1);
 }
 
 /// A look at the surroundings, two kernels of which the first keeps its image; what an earlier frame handed on.
