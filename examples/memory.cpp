@@ -38,7 +38,7 @@ int main(int argc, char** argv) try {
 
     afterglow_frame frame = afterglow_frame_default();
     frame.number = number;
-    frame.time = (number - 1) / frame.fps;
+    frame.time = number / frame.fps;  // as `afterglow run` counts
     info.frame = &frame;
     stack.run(info);
   }

@@ -275,7 +275,7 @@ AFTERGLOW_API afterglow_error *afterglow_stack_get_numbers(const afterglow_stack
  * others are usage errors. */
 typedef struct afterglow_frame {
   size_t struct_size;
-  double number, time; /* time in seconds */
+  double number, time; /* time in seconds; afterglow run counts number / fps */
   double fps, step;    /* pictures a second; frames from one picture to the next */
   bool restart;
   bool has_position;
@@ -467,9 +467,9 @@ AFTERGLOW_API VkFormat afterglow_stack_result_format(const afterglow_stack *stac
 
 /* Says which images the next recordings read and write. After each afterglow_stack_prepare that made something new, and
  * whenever images change. Nothing that was recorded from the stack may be in flight. Pictures that the look has of its
- * own (masks, tables) are brought to the device here: the caller must not use the queue meanwhile. One thread at a time.
- * Errors: device, other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS, nothing
- * prepared). */
+ * own (masks, tables) are brought to the device here: the caller must not use the queue meanwhile. One thread at a
+ * time. Errors: device, other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS,
+ * nothing prepared). */
 AFTERGLOW_API afterglow_error *afterglow_stack_bind(afterglow_stack *stack, const afterglow_bindings *bindings);
 
 /* Records the stack. Inputs must be in SHADER_READ_ONLY_OPTIMAL, their writes made visible to sampled reads of fragment

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "api/backend.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/cache_folder.h"
@@ -110,8 +112,19 @@ Result<void> Backend::prepare(const Shape& shape) {
   return done;
 }
 
-Result<void> Backend::prepare_frame(const Shape& shape) {
+Result<std::shared_ptr<const Build>> Backend::evaluate(const Shape& shape) {
   AFTERGLOW_TRY(auto build, source_->evaluate(shape));
+  if (const std::string& space = preset().input_space(); !space.empty())
+    diagnostics_.warn_once(
+        "input_space " + space,
+        fmt::format("input_space = \"{}\" of the look is for files: pictures of a host are scene-linear "
+                    "floats or sRGB codes, and are taken as these",
+                    space));
+  return build;
+}
+
+Result<void> Backend::prepare_frame(const Shape& shape) {
+  AFTERGLOW_TRY(auto build, evaluate(shape));
   Stack& stack = source_->stack();
   AFTERGLOW_CHECK(stack.prepare(request_for(build, shape.encoding, shape.region)));
   prepared_ = true;
@@ -131,7 +144,7 @@ Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostIm
 Result<void> Backend::run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs,
                                 HostResult& result) {
   clamped_ = 0;
-  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
+  AFTERGLOW_TRY(auto build, evaluate(shape));
   Stack& stack = source_->stack();
   AFTERGLOW_TRY(RenderRequest request, stack.request(request_for(build, shape.encoding, shape.region)));
   const bool runs = request.work.runs();

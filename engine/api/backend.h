@@ -135,6 +135,7 @@ class Backend {
   Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
   Result<void> set_all(Given all, MustFit must_fit);
   void forget_what_went(const Stack* before);
+  Result<std::shared_ptr<const Build>> evaluate(const Shape& shape);
   Result<void> prepare_frame(const Shape& shape);
   Result<void> run_frame(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result);
   std::shared_ptr<SharedDevice> device_;  // last to go

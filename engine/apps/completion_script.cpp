@@ -66,11 +66,17 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
       if (option.positional || (offered(option).empty() && !is_folder(option))) continue;
       std::vector<std::string> keys;
       for (const auto& name : option.names) keys.push_back(command.name + "/" + name);
-      values += fmt::format("    {}) COMPREPLY=($(compgen {} -- \"$word\")); return ;;\n", join(keys, " | "),
-                            offered(option).empty() ? "-d" : "-W '" + join(offered(option), " ") + "'");
+      const std::string reply = offered(option).empty() ? "_afterglow_folders \"$word\""
+                                                        : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))",
+                                                                      join(offered(option), " "));
+      values += fmt::format("    {}) {}; return ;;\n", join(keys, " | "), reply);
     }
   }
-  return kMade + fmt::format(R"(_afterglow() {{
+  return kMade + fmt::format(R"(_afterglow_folders() {{
+  compopt -o filenames 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -d -- "$1")
+}}
+_afterglow() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}} words=
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then

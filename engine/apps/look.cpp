@@ -108,7 +108,7 @@ LookFindings check_shaders(const Look& look) {
   for (double step = 1; !waiting.empty() && 1 + step <= kLastFrame && kernels.found.errors.empty(); step *= 2) {
     BuildContext context = look.build.context;
     context.frame = 1 + step;
-    context.time = step / context.fps;
+    context.time = context.frame / context.fps;
     Diagnostics silent;
     const auto build = look.preset->evaluate(context, silent);
     if (!build) continue;  // there may be no such frame

@@ -14,6 +14,7 @@
 #include "core/paths.h"
 #include "core/text.h"
 #include "exec/calibration.h"
+#include "image/input_space.h"
 #include "image/video_writer.h"
 
 namespace afterglow {
@@ -86,6 +87,13 @@ void LayerArguments::add(CLI::App& command) {
   command
       .add_option("--layer", layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
       ->type_name("NAME")
+      ->group(group);
+  std::vector<std::string> spaces;
+  for (const InputSpace& space : input_spaces()) spaces.emplace_back(space.name);
+  command
+      .add_option("--input-space", input_space,
+                  "Colour space that pictures are stored in, whatever they and the look say: " + join(spaces))
+      ->type_name("SPACE")
       ->group(group);
   command.add_option("--depth", depth, "Depth from another file or channel; FILE may be a pattern")
       ->type_name("FILE[:CHANNEL]")

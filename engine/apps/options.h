@@ -49,9 +49,9 @@ struct PresetArguments {
   Result<std::filesystem::path> preset_file() const;
 };
 
-/// --layer, --depth, --normal, --motion: where the parts of a picture come from.
+/// --layer, --input-space, --depth, --normal, --motion: where the parts of a picture come from, and how it is stored.
 struct LayerArguments {
-  std::string layer, depth, normal, motion;
+  std::string layer, input_space, depth, normal, motion;
   void add(CLI::App& command);
   /// Into what takes them: ReadOptions, FrameListRequest.
   template <class Request>

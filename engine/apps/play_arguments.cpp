@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/paths.h"
 #include "core/text.h"
+#include "image/input_space.h"
 #include "image/writer.h"
 
 namespace afterglow {
@@ -136,6 +137,8 @@ Result<PlayerOptions> PlayArguments::player() const {
   out.footage.frames = frames;
   AFTERGLOW_TRY(out.footage.proxy, parse_proxy(proxy));
   out.footage.read.layer = layers.layer;
+  if (!layers.input_space.empty()) AFTERGLOW_CHECK(find_input_space(layers.input_space));
+  out.footage.read.input_space = layers.input_space;
   out.footage.read.max_bytes = out.live.stack.max_memory;
   layers.choose(out.footage.read);
   auto memory = parse_memory(cache);

@@ -4,16 +4,9 @@
 #include <fmt/format.h>
 
 #include "core/text.h"
-#include "image/input_space.h"
 
 namespace afterglow {
 namespace {
-
-std::string space_list() {
-  std::vector<std::string> names;
-  for (const InputSpace& space : input_spaces()) names.emplace_back(space.name);
-  return join(names);
-}
 
 void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs,
@@ -27,10 +20,6 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->required();
   const std::string input = "Input", sequence = "Sequences", output = "Output";
   a.layers.add(app);
-  app.add_option("--input-space", a.input_space,
-                 "Colour space that pictures are stored in, whatever they say: " + space_list())
-      ->type_name("SPACE")
-      ->group(input);
   app.add_option(
          "--size", a.size,
          "Scale the picture first, for a quick look: 640x360, 640 (the width), x360, 50%; lengths scale with it")
@@ -191,7 +180,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--max-error", number(a.execution.max_error)},
           {"--reference", flag(a.execution.reference)},
           {"--layer", a.layers.layer},
-          {"--input-space", a.input_space},
+          {"--input-space", a.layers.input_space},
           {"--depth", a.layers.depth},
           {"--normal", a.layers.normal},
           {"--motion", a.layers.motion},
@@ -279,7 +268,7 @@ void RunArguments::add(CLI::App& command) {
 
 Result<BatchRequest> RunArguments::request() const {
   BatchRequest out{.files = files,
-                   .input_space = input_space,
+                   .input_space = layers.input_space,
                    .pre_roll = pre_roll,
                    .resume = resume,
                    .pixel_options = pixel_options(*this),

@@ -16,7 +16,7 @@ struct RunArguments {
   ExecutionArguments execution;
   FrameListRequest files;
   LayerArguments layers;
-  std::string input_space, output_space, size, region;
+  std::string output_space, size, region;
   std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
   std::string codec, bitrate, pixel_format, audio;

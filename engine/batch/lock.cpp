@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/json_text.h"
+#include "core/utf8.h"
 #include "core/version.h"
 #include "image/ocio.h"
 #include "shader/execution_config.h"
@@ -75,6 +76,13 @@ Lock in_version_1(Lock now, const Lock& locked, const fs::path& file, Diagnostic
   return now;
 }
 
+/// As the file holds it.
+LockTable written(const LockTable& table) {
+  LockTable out;
+  for (const auto& [name, value] : table) out[utf8_text(name)] = utf8_text(value);
+  return out;
+}
+
 Error not_a_lock(const fs::path& file, const std::string& why) {
   return {ErrorKind::io, fmt::format("this is no lock: {}", why), file.string(), 0, "a file written by --lock"};
 }
@@ -84,7 +92,7 @@ Error not_a_lock(const fs::path& file, const std::string& why) {
 Result<Lock> look_lock(const Preset& preset, const fs::path& file_of_preset, const Inventory& inventory,
                        const PixelOptions& options) {
   Lock lock;
-  lock.preset = file_of_preset.filename().string();
+  lock.preset = utf8_text(file_of_preset.filename().string());
   const PortableNames names(preset.path());
   std::set<fs::path> files = inventory.sources, of_frames;
   for (const auto& [file, name] : inventory.depends.files) (inventory.moves ? of_frames : files).insert(file);
@@ -96,6 +104,8 @@ Result<Lock> look_lock(const Preset& preset, const fs::path& file_of_preset, con
     if (!value.empty()) lock.options[name] = value;
   lock.made_with = {{"afterglow", version()}, {"shader compiler", glsl_compiler_version()}};
   if (!lock.generated.empty()) lock.made_with["OpenColorIO"] = ocio_version();
+  for (LockTable* table : {&lock.files, &lock.frame_files, &lock.environment, &lock.generated, &lock.options})
+    *table = written(*table);
   return lock;
 }
 

@@ -164,12 +164,14 @@ std::span<const Skipped> skips_of(const FrameRecord& frame) {
 /// What single frames did not run, each reason once, with the number of frames.
 std::string skipped_in_frames_text(const RunReport& report) {
   std::vector<std::pair<Skipped, std::size_t>> found;
-  for (const auto& frame : report.frames)
+  for (const auto& frame : report.frames) {
+    if (frame.state != FrameRecord::State::done) continue;
     for (const auto& skipped : skips_of(frame)) {
       auto at = std::ranges::find(found, skipped, [](const auto& f) -> const Skipped& { return f.first; });
       if (at == found.end()) at = found.insert(found.end(), {skipped, 0});
       ++at->second;
     }
+  }
   const std::size_t done = count(report, FrameRecord::State::done);
   std::string out;
   for (const auto& [skipped, frames] : found) {

@@ -248,19 +248,19 @@ std::string Footage::picture_name(int picture) const {
   return source.movie ? fmt::format("{}, frame {}", name, source.number) : name;
 }
 
-Result<Picture> Footage::read(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const {
-  auto read = read_whole(picture, auxiliary, diagnostics);
+Result<Picture> Footage::read(int picture, const FootageNeeds& needs, Diagnostics& diagnostics) const {
+  auto read = read_whole(picture, needs, diagnostics);
   if (!read) return read;
   if (proxy_ > 1) scale_picture(*read, {SizeWish{.share = 1.0 / proxy_}.of(read->display_window.size())});
   note_content(*read);
   return read;
 }
 
-Result<Picture> Footage::read_whole(int picture, const std::vector<std::string>& auxiliary,
-                                    Diagnostics& diagnostics) const {
+Result<Picture> Footage::read_whole(int picture, const FootageNeeds& needs, Diagnostics& diagnostics) const {
   const Source& source = pictures_[static_cast<std::size_t>(picture)];
   ReadOptions options = read_;
-  options.auxiliary = auxiliary;
+  options.auxiliary = needs.auxiliary;
+  if (options.input_space.empty()) options.input_space = needs.input_space;
   AFTERGLOW_TRY(options.depth, resolved(read_.depth, source.number));
   AFTERGLOW_TRY(options.normal, resolved(read_.normal, source.number));
   AFTERGLOW_TRY(options.motion, resolved(read_.motion, source.number));

@@ -22,11 +22,18 @@ namespace afterglow {
 struct FootageOptions {
   std::vector<std::string> inputs;  ///< files, patterns (shot.####.exr, shot.%04d.exr), videos
   std::string frames;               ///< "1-24x2", for numbered inputs and videos; empty: all there are
-  /// Layers and limits; depth and normal may be patterns. `auxiliary` is given to `read`.
+  /// Layers and limits; depth and normal may be patterns. What looks need is given to `read`.
   ReadOptions read;
   int proxy = 1;  ///< pictures are read at one part in this of their sides: 1, 2, 4 or 8
   /// Player: one picture that is a frame of a sequence opens that, and stands at the frame.
   bool whole_sequences = false;
+};
+
+/// How looks want their pictures to be read.
+struct FootageNeeds {
+  std::vector<std::string> auxiliary{};  ///< "depth", "normal", as stacks ask for them
+  std::string input_space{};             ///< where ReadOptions says none; empty: what pictures say themselves
+  bool operator==(const FootageNeeds&) const = default;
 };
 
 /// "1/2" is 2, "1" is 1. Errors: usage (not 1, 1/2, 1/4 or 1/8).
@@ -92,12 +99,11 @@ class Footage : public std::enable_shared_from_this<Footage> {
   /// The same frames and pictures, read at another size.
   std::shared_ptr<const Footage> at_proxy(int proxy) const;
 
-  /// Reads a picture, with its content hashes noted. `auxiliary`: "depth", "normal", as the stack asks for them. A
-  /// proxy has the mean of what each of its pixels covers, of depth and normals the nearest (image/scale.h). Errors:
-  /// io, naming the file.
-  Result<Picture> read(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const;
+  /// Reads a picture, with its content hashes noted. A proxy has the mean of what each of its pixels covers, of depth
+  /// and normals the nearest (image/scale.h). Errors: io, naming the file.
+  Result<Picture> read(int picture, const FootageNeeds& needs, Diagnostics& diagnostics) const;
   /// The same whole, where `read` gives proxies.
-  Result<Picture> read_whole(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const;
+  Result<Picture> read_whole(int picture, const FootageNeeds& needs, Diagnostics& diagnostics) const;
 
  private:
   struct Source {

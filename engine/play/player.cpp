@@ -52,12 +52,12 @@ void Player::State::begin_reading() {
   ahead = std::make_unique<ReadAhead>(
       [this](int key) {
         const auto read_from = readable();
-        std::vector<std::string> needs;
+        FootageNeeds wanted;
         {
           const std::lock_guard lock(mutex);
-          needs = auxiliary;
+          wanted = needs;
         }
-        auto read = read_from->read(key, needs, diagnostics);
+        auto read = read_from->read(key, wanted, diagnostics);
         const std::lock_guard lock(mutex);
         if (read) {
           unreadable.erase(key);
@@ -97,20 +97,31 @@ void Player::State::want_pictures() {
   ahead->want(keys);
 }
 
-/// Auxiliary inputs that the present stacks ask for: when there are new ones, pictures are read again with them.
+/// What the present stacks want of pictures: when they want more, or other colours, pictures are read again. Both looks
+/// see the same ones, as the first has them read.
 void Player::State::follow_needs() {
-  std::set<std::string> needs;
-  for (LiveSession* session : {first.get(), second.get()})
-    if (Stack* stack = session ? session->live().stack() : nullptr)
-      for (const auto& name : stack->preset().needs()) needs.insert(name);
-  bool more = false;
+  const auto stack_of = [](const std::unique_ptr<LiveSession>& session) {
+    return session ? session->live().stack() : nullptr;
+  };
+  Stack *const own = stack_of(first), *const other = stack_of(second);
+  std::set<std::string> auxiliary;
+  for (Stack* stack : {own, other})
+    if (stack)
+      for (const auto& name : stack->preset().needs()) auxiliary.insert(name);
+  bool others = false;
   {
     const std::lock_guard lock(mutex);
-    needs.insert(auxiliary.begin(), auxiliary.end());
-    more = needs.size() > auxiliary.size();
-    auxiliary.assign(needs.begin(), needs.end());
+    const FootageNeeds before = needs;
+    auxiliary.insert(needs.auxiliary.begin(), needs.auxiliary.end());
+    needs.auxiliary.assign(auxiliary.begin(), auxiliary.end());
+    if (own) needs.input_space = own->preset().input_space();
+    others = needs != before;
   }
-  if (more && ahead) {
+  if (own && other && options.footage.read.input_space.empty() &&
+      own->preset().input_space() != other->preset().input_space())
+    diagnostics.warn_once("input_space of --b",
+                          "the two looks say different things of input_space; both see pictures as the first has them");
+  if (others && ahead) {
     ahead->forget();
     reread = true;
   }

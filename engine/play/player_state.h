@@ -25,7 +25,7 @@ struct Player::State {
   std::mutex mutex;
   std::condition_variable woken;
   bool awake = false;
-  std::vector<std::string> auxiliary;           ///< what readers read besides the colour
+  FootageNeeds needs;                           ///< of the looks that are there
   std::set<int> unreadable;                     ///< pictures whose last reading failed
   std::shared_ptr<const Footage> read_footage;  ///< that readers read of
 

@@ -76,6 +76,8 @@ TEST_F(Completions, BashOffersCommandsOptionsAndValues) {
   fs::create_directories(path("folder"));
   write("folder.lua", "");
   EXPECT_THAT(offered("run --path fol"), testing::ElementsAre("folder"));
+  fs::create_directories(path("my looks"));
+  EXPECT_THAT(offered("run --path my"), testing::ElementsAre("my looks"));
   EXPECT_THAT(offered("run look.lua look"), IsEmpty()) << "files are the shell's own";
   EXPECT_THAT(offered("run --codec prores4"), testing::ElementsAre("prores4444"));
   EXPECT_THAT(offered("run --compression pxr"), testing::ElementsAre("pxr24"));

@@ -59,6 +59,21 @@ TEST_F(Locks, TheSameLookRunsAndMakesTheSameBytes) {
   EXPECT_EQ(read("out.png"), first);
 }
 
+TEST_F(Locks, NamesThatAreNoUtf8) {
+  const std::string look = "l\xffk.lua";
+  fs::copy_file(path("look.lua"), path(look));
+  const auto run_look = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", look, "in.exr", "-o", "out.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  ASSERT_EQ(run_look({"--lock", "look.lock"}).exit_code, kDone);
+  const Outcome again = run_look({"--locked", "look.lock"});
+  EXPECT_EQ(again.exit_code, kDone) << again.err;
+  fs::copy_file(path("look.lua"), path("l\xfe.lua"));
+  EXPECT_EQ(run({"run", "l\xfe.lua", "in.exr", "-o", "out.png", "--locked", "look.lock"}).exit_code, kScript);
+}
+
 TEST_F(Locks, TheSameBytesWhateverTheThreadsAndCaches) {
   std::string first;
   for (const char* threads : {"0", "1", "2", "5"}) {

@@ -211,6 +211,49 @@ def test_wrong_arguments(stack):
         afterglow.Stack("neon_night", precision="double")
 
 
+def test_pictures_that_do_not_fit_are_usage_errors(stack):
+    for shape in ((4, 4), (4, 4, 5), (3, 4, 40), (4,), (2, 3, 4, 4)):
+        with pytest.raises(afterglow.UsageError, match="shape is"):
+            stack.run(np.zeros(shape, np.float32))
+    with pytest.raises(afterglow.UsageError, match="no array"):
+        stack.run(None)
+
+    class Broken:
+        def __array__(self, *args, **options):
+            raise OSError("the tape is torn")
+
+    with pytest.raises(OSError, match="the tape is torn"):
+        stack.run(Broken())
+
+
+def test_values_of_numpy_and_whole_numbers(folder, device, stack):
+    one = np.ones((1, 1, 3), np.float32)
+    for value in (5, 5.0, np.float32(5), np.int64(5), np.array(5), np.array(5.0, np.float16)):
+        stack.set("gain.amount", value)
+        np.testing.assert_array_equal(stack.run(one), 5 * one)
+    for value in (True, np.bool_(True), np.array(True)):
+        stack.set("gain.off", value)
+        np.testing.assert_array_equal(stack.run(one), one)
+    look_of_text = """
+local fx = require "afterglow"
+local args = fx.args { shot = fx.text { default = "none", doc = "Shot." } }
+return fx.stack { name = args.shot, fx.gain {} }
+"""
+    (folder / "shots.lua").write_text(look_of_text)
+    for value, text in ((5, "5"), (np.int32(5), "5"), (0.5, "0.5"), (10**12, "1000000000000")):
+        shots = afterglow.Stack(folder / "shots.lua", device=device, args={"shot": value})
+        assert shots.arguments[0]["value"] == text
+
+
+def test_time_is_that_of_the_frame(folder, device):
+    (folder / "timed.lua").write_text(look("fx.gain { amount = function(t) return t.time end }"))
+    timed = afterglow.Stack(folder / "timed.lua", device=device)
+    one = np.ones((1, 1, 3), np.float32)
+    np.testing.assert_array_equal(timed.run(one, frame=48), 2 * one)
+    np.testing.assert_array_equal(timed.run(one, frame=48, fps=16), 3 * one)
+    np.testing.assert_array_equal(timed.run(one, frame=48, time=7), 7 * one)
+
+
 def test_reload(folder, stack):
     one = np.ones((1, 1, 3), np.float32)
     (folder / "look.lua").write_text(look("fx.gain { amount = 7 }"))

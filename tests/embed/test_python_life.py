@@ -71,6 +71,27 @@ def test_stacks_that_call_their_owner_are_collected(folder, device, kind):
     assert threads() <= before
 
 
+ENDED = """
+import sys, threading, time
+import numpy as np
+import afterglow
+stack = afterglow.Stack(sys.argv[1])
+ran = threading.Event()
+def work():
+    while True:
+        stack.run(np.ones((64, 64, 3), np.float32))
+        ran.set()
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+ran.wait()
+"""
+
+
+def test_python_ends_while_a_daemon_thread_is_at_work(folder):
+    for _ in range(4):
+        subprocess.run([sys.executable, "-c", ENDED, folder / "look.lua"], check=True, timeout=240)
+
+
 def test_the_collector_may_run_at_any_time(folder, device):
     class Path:
         def __fspath__(self):

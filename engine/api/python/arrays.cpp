@@ -31,8 +31,8 @@ afterglow_image image_of(py::array& array, const char* name) {
   const auto limit = std::numeric_limits<std::int32_t>::max();
   if (array.ndim() < 2 || array.ndim() > 3 || array.shape(0) > limit || array.shape(1) > limit ||
       (array.ndim() == 3 && array.shape(2) > 4))
-    throw py::value_error(std::string(name) + ": the shape is " + shape_text(array) +
-                          "; allowed: (height, width, channels)");
+    refuse(std::string(name) + ": the shape is " + shape_text(array) +
+           "; allowed: (height, width, channels), with channels next to each other, 4 at most");
   afterglow_image image{};
   image.data = const_cast<void*>(array.data());
   image.height = static_cast<std::int32_t>(array.shape(0));
@@ -48,12 +48,12 @@ afterglow_image image_of(py::array& array, const char* name) {
 }  // namespace
 
 Picture input(const py::object& given, const char* name, bool may_be_flat) {
-  py::array array = py::array::ensure(given);
-  if (!array) throw py::value_error(std::string(name) + " is no array");
+  py::array array = py::module_::import("numpy").attr("asarray")(given);
+  if (array.dtype().kind() == 'O') refuse(std::string(name) + " is no array of numbers");
   if (!is_known(array.dtype())) array = array.attr("astype")("float32");
   if (array.ndim() == 2 && !may_be_flat)
-    throw py::value_error(std::string(name) + ": the shape is " + shape_text(array) +
-                          "; allowed: (height, width, 3) or (height, width, 4)");
+    refuse(std::string(name) + ": the shape is " + shape_text(array) +
+           "; allowed: (height, width, 3) or (height, width, 4)");
   if (array.ndim() >= 2 && array.ndim() <= 3 && !is_readable(array))
     array = py::module_::import("numpy").attr("ascontiguousarray")(array);
   Picture out{array, {}};
@@ -75,12 +75,12 @@ void keep_apart(std::vector<Picture>& sources, const Picture& result) {
 }
 
 Picture output(const py::object& given) {
-  if (!py::isinstance<py::array>(given)) throw py::value_error("out is no numpy array");
+  if (!py::isinstance<py::array>(given)) refuse("out is no numpy array");
   auto array = py::reinterpret_borrow<py::array>(given);
-  if (!array.writeable()) throw py::value_error("out is read-only");
-  if (!is_known(array.dtype())) throw py::value_error("out must be of float32, float16 or uint8");
+  if (!array.writeable()) refuse("out is read-only");
+  if (!is_known(array.dtype())) refuse("out must be of float32, float16 or uint8");
   if (array.ndim() != 3 || !is_readable(array))
-    throw py::value_error(
+    refuse(
         "out must be (height, width, channels), with channels next to each other, and no two "
         "pixels in one place");
   Picture out{array, {}};
@@ -90,7 +90,7 @@ Picture output(const py::object& given) {
 
 Picture output_like(const Picture& source, const py::object& dtype) {
   const py::dtype type = dtype.is_none() ? source.array.dtype() : py::dtype::from_args(dtype);
-  if (!is_known(type)) throw py::value_error("dtype must be float32, float16 or uint8");
+  if (!is_known(type)) refuse("dtype must be float32, float16 or uint8");
   py::array array = py::module_::import("numpy").attr("empty")(source.array.attr("shape"), type);
   Picture out{array, {}};
   out.image = image_of(out.array, "out");

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "others_run.h"
 #include "values.h"
 
 namespace afterglow::python {
@@ -18,13 +19,13 @@ afterglow_precision precision_of(const std::string& name) {
   if (name == "auto") return AFTERGLOW_PRECISION_AUTOMATIC;
   if (name == "fp32") return AFTERGLOW_PRECISION_FP32;
   if (name == "fp16") return AFTERGLOW_PRECISION_FP16;
-  throw py::value_error("precision is '" + name + "'; allowed: auto, fp32, fp16");
+  refuse("precision is '" + name + "'; allowed: auto, fp32, fp16");
 }
 
 afterglow_rect region_of(const py::object& region) {
   if (region.is_none()) return {0, 0, 0, 0};
   const auto [x, y, width, height] = cast<std::tuple<int, int, int, int>>(region, "region", "(x, y, width, height)");
-  if (width < 1 || height < 1) throw py::value_error("region is (x, y, width, height); sides start at 1");
+  if (width < 1 || height < 1) refuse("region is (x, y, width, height); sides start at 1");
   return {x, y, width, height};
 }
 
@@ -60,14 +61,14 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   device_message_ = shared.message();
   const std::shared_ptr<Device> used = shared.get();
   const std::string file = preset.is_none() ? "" : path_text(preset);
-  const py::gil_scoped_release others;
+  const OthersRun others;
   stack_ = std::make_unique<Stack>(*used, file, std::move(wanted));
 }
 
 PyStack::~PyStack() {
   const bool own = in_own_function();
   // Threads of a stack that follows its files may be waiting to call Python.
-  const py::gil_scoped_release others;
+  const OthersRun others;
   // On such a thread it cannot wait for that thread's end: the collector may run anywhere.
   if (own) std::thread([gone = std::move(stack_)] {}).detach();
   stack_.reset();
@@ -76,7 +77,7 @@ PyStack::~PyStack() {
 void PyStack::close() {
   {
     const auto lock = wait_for_others();
-    const py::gil_scoped_release others;
+    const OthersRun others;
     stack_.reset();
   }
   clear();
@@ -105,7 +106,7 @@ std::unique_lock<std::mutex> PyStack::wait_for_others() const {
   if (in_own_function())
     throw std::runtime_error(
         "a stack must not be used in its own message or wake function, nor in the message function of its device");
-  const py::gil_scoped_release others;
+  const OthersRun others;
   // After fork() the thread that holds the lock is in the other process; the library refuses the call.
   return getpid() == process_ ? std::unique_lock(mutex_) : std::unique_lock(mutex_, std::defer_lock);
 }
@@ -114,8 +115,8 @@ std::unique_lock<std::mutex> PyStack::wait_for_others() const {
 template <class Work>
 auto PyStack::alone(Work work) const {
   const auto lock = wait_for_others();
-  if (!stack_) throw py::value_error("the stack is closed");
-  const py::gil_scoped_release others;
+  if (!stack_) refuse("the stack is closed");
+  const OthersRun others;
   return work();
 }
 
@@ -145,8 +146,8 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   info.result = result.image;
   afterglow_frame frame = afterglow_frame_default();
   frame.number = options.take("frame", frame.number);
-  frame.time = options.take("time", frame.time);
   frame.fps = options.take("fps", frame.fps);
+  frame.time = options.take("time", frame.number / frame.fps);  // as `afterglow run` counts it
   frame.step = options.take("step", frame.step);
   frame.restart = options.take("restart", false);
   if (const py::object position = options.take("position"); !position.is_none()) {
@@ -162,7 +163,8 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   return result.array;
 }
 
-void PyStack::set(const std::string& name, const py::object& value) {
+void PyStack::set(const std::string& name, const py::object& given) {
+  const py::object value = plain(given);
   if (is_bool(value)) {
     const bool on = value.cast<bool>();
     return alone([&] { stack_->set(name, on); });

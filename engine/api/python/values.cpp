@@ -3,12 +3,17 @@
 
 namespace afterglow::python {
 
-/// numpy is not imported for this: where nobody has done so, nothing can be of it.
-bool is_bool(const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return true;
-  const py::object numpy = py::module_::import("sys").attr("modules").attr("get")("numpy");
-  return !numpy.is_none() && py::isinstance(value, numpy.attr("bool_"));
+void refuse(const std::string& message) {
+  PyErr_SetString(py::module_::import("afterglow").attr("UsageError").ptr(), message.c_str());
+  throw py::error_already_set();
 }
+
+py::object plain(const py::object& value) {
+  const bool one = py::hasattr(value, "item") && py::getattr(value, "ndim", py::none()).equal(py::int_(0));
+  return one ? value.attr("item")() : value;
+}
+
+bool is_bool(const py::handle& value) { return py::isinstance<py::bool_>(value); }
 
 bool is_number(const py::handle& value) { return PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr()); }
 
@@ -28,13 +33,14 @@ std::vector<std::string> path_texts(const py::object& paths) {
   return out;
 }
 
-std::string argument_text(const std::string& name, const py::handle& value) {
+std::string argument_text(const std::string& name, const py::handle& given) {
+  const py::object value = plain(py::reinterpret_borrow<py::object>(given));
   if (py::isinstance<py::str>(value)) return text_of(value);
   if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
-  if (is_number(value)) return py::repr(py::float_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  if (py::isinstance<py::int_>(value)) return py::str(value).cast<std::string>();
+  if (is_number(value)) return py::repr(py::float_(value)).cast<std::string>();
   std::string text;
-  for (const double number : cast<std::vector<double>>(py::reinterpret_borrow<py::object>(value), name,
-                                                       "a bool, a number, a str or some numbers"))
+  for (const double number : cast<std::vector<double>>(value, name, "a bool, a number, a str or some numbers"))
     text += (text.empty() ? "{" : ", ") + py::repr(py::float_(number)).cast<std::string>();
   return text + "}";
 }

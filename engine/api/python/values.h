@@ -13,6 +13,12 @@ namespace afterglow::python {
 
 namespace py = pybind11;
 
+/// Raises afterglow.UsageError, which is a ValueError too.
+[[noreturn]] void refuse(const std::string& message);
+
+/// Arrays and scalars of numpy that are one value, as that; others as they are.
+py::object plain(const py::object& value);
+
 /// What Python calls a wrong type, it does: pybind11 makes a RuntimeError of it.
 template <class T>
 T cast(const py::object& value, const std::string& name, const char* what) {
@@ -28,7 +34,7 @@ constexpr const char* kWhat = std::is_same_v<T, bool>   ? "a bool"
                               : std::is_arithmetic_v<T> ? "a number"
                                                         : "a str";
 
-bool is_bool(const py::handle& value);  ///< also numpy's
+bool is_bool(const py::handle& value);
 bool is_number(const py::handle& value);
 
 /// As UTF-8. Parts of it that name files in other bytes (surrogates, as os.listdir gives them) become those bytes.

@@ -55,6 +55,18 @@ TEST_F(PictureTest, FloatsAreThoseOfASession) {
   EXPECT_EQ(source, wanted.color.pixels);
 }
 
+/// It is of files; what a host hands over is what afterglow.h says.
+TEST_F(PictureTest, TheInputSpaceOfALookIsToldToBeOfFiles) {
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size()), plain(source.size());
+  look("fx.gain { amount = 2 }");
+  run(stack(), image(source, kWidth, kHeight), image(plain, kWidth, kHeight));
+  look("input_space = \"logc3\", fx.gain { amount = 2 }");
+  const StackPtr stack = this->stack(listening());
+  for (int i = 0; i < 2; ++i) run(stack, image(source, kWidth, kHeight), image(result, kWidth, kHeight));
+  EXPECT_EQ(result, plain);
+  EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("input_space = \"logc3\" of the look is for files")));
+}
+
 TEST_F(PictureTest, ThreeChannelsAreOpaque) {
   std::vector<float> opaque = pixels(kWidth, kHeight), three;
   for (std::size_t i = 0; i < opaque.size(); ++i) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/file.h"
 #include "image/writer.h"
@@ -94,7 +95,10 @@ class PlayerTest : public ::testing::Test {
   static inline std::unique_ptr<Device> device_;
   bool follow_ = false;  ///< else edits are told of by `reload`: then nothing waits for the system's watching
   double seconds_ = 100;
-  Diagnostics diagnostics_;
+  std::vector<std::string> warnings_;
+  Diagnostics diagnostics_{[this](Severity severity, const std::string& message) {
+    if (severity == Severity::warning) warnings_.push_back(message);
+  }};
   fs::path folder_;
   std::unique_ptr<Player> player_;
 };

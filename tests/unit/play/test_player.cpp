@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "player_test.h"
 
 namespace afterglow {
@@ -84,6 +86,39 @@ TEST_F(PlayerTest, EffectsThatLookBackGoOnOverDroppedFrames) {
   player.transport().go_to(1, seconds_);
   turn();
   EXPECT_FLOAT_EQ(result(), 1) << "a jump begins anew";
+}
+
+/// As `run` reads them.
+TEST_F(PlayerTest, PicturesAreOfTheSpaceThatTheLookSays) {
+  write_picture_of(1, 0.5f);
+  const auto write_space = [&](const std::string& name, const std::string& said) {
+    write(name, "return require(\"afterglow\").stack { " + said + " }\n");
+  };
+  write_space("look.lua", "input_space = \"gamma22\"");
+  open();
+  turn();
+  EXPECT_FLOAT_EQ(source(), std::pow(0.5f, 2.2f));
+  write_space("look.lua", "input_space = \"gamma24\"");
+  reload();
+  EXPECT_FLOAT_EQ(source(), std::pow(0.5f, 2.4f));
+  write_space("look.lua", "");
+  reload();
+  EXPECT_FLOAT_EQ(source(), 0.5f);
+  EXPECT_THAT(warnings_, testing::IsEmpty());
+
+  write_space("other.lua", "input_space = \"gamma24\"");
+  PlayerOptions options;
+  options.other_preset = path("other.lua");
+  options.footage.read.input_space = "gamma22";  // --input-space
+  open(options);
+  turn();
+  EXPECT_FLOAT_EQ(source(), std::pow(0.5f, 2.2f));
+  EXPECT_THAT(warnings_, testing::IsEmpty());
+  options.footage.read.input_space.clear();
+  open(options);
+  turn();
+  EXPECT_FLOAT_EQ(source(), 0.5f) << "as the first look has it";
+  EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("input_space")));
 }
 
 TEST_F(PlayerTest, HeldFramesAreNotRunAgain) {

@@ -9,7 +9,7 @@ __version__: str
 
 _Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 _Message = Callable[[Literal["info", "warning"], str], None]
-_Value = Union[bool, float, str, Sequence[float]]
+_Value = Union[bool, float, str, Sequence[float], np.generic, NDArray[Any]]
 
 class Error(Exception):
     message: str
@@ -80,7 +80,7 @@ class Stack:
         out: Optional[NDArray[Any]] = None,
         dtype: Optional[DTypeLike] = None,
         frame: float = 1,
-        time: float = 0,
+        time: Optional[float] = None,
         fps: float = 24,
         step: float = 1,
         restart: bool = False,
@@ -91,7 +91,7 @@ class Stack:
         """Runs the stack on a picture of (height, width, 3 or 4). float32 and float16 are scene-linear with associated
         alpha, uint8 are sRGB codes with straight alpha. Other numbers become float32. The result is a new array like
         the source, of `dtype` where that is given, or `out`, which may be the source itself. With `region` the rest of
-        a new array is undefined."""
+        a new array is undefined. `time` in seconds is frame / fps where it is not given, as `afterglow run` counts."""
 
     def set(self, name: str, value: _Value) -> None:
         """Sets ENTRY.SETTING, as in "glow.intensity". Text is read as on the command line."""
