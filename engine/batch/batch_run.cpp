@@ -111,7 +111,7 @@ Result<void> prepare_notes(BatchRun& run) {
       options_text(asked.pixel_options) + execution_name(run.session->stack().choice().execution);
   Preset& preset = run.session->preset();
   AFTERGLOW_TRY(const Hash look, look_hash(preset, inventory, options));
-  run.notes.emplace(look, preset.path());
+  run.notes.emplace(look, preset);
   if (!asked.resume) return {};
   if (const int left = remove_leftovers(run.report.frames))
     run.events.note(fmt::format("removed {} half-written files of runs that were killed", left));

@@ -104,6 +104,7 @@ std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector
 
 Result<Hash> FileHashes::of(const fs::path& file) {
   if (const auto known = known_.find(file); known != known_.end()) return known->second;
+  if (const auto seen = content_seen(*preset_.probes(), file)) return known_[file] = *seen;
   AFTERGLOW_TRY(const Hash hash, hash_file(file));
   return known_[file] = hash;
 }

@@ -37,13 +37,16 @@ Result<Inventory> take_inventory(Preset& preset, const std::vector<BuildContext>
 /// The frames as they usually are: see usual_context.
 std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps);
 
-/// Hashes of files, each read once.
+/// Hashes of files, each read once. Of those that the preset has read it is what it read then, whatever lies there by
+/// now.
 class FileHashes {
  public:
+  explicit FileHashes(const Preset& preset) : preset_(preset) {}
   /// Errors: io.
   Result<Hash> of(const std::filesystem::path& file);
 
  private:
+  const Preset& preset_;
   std::map<std::filesystem::path, Hash> known_;
 };
 

@@ -25,10 +25,10 @@ using LockTable = std::map<std::string, std::string>;
 constexpr int kVersion = 2;
 
 /// Hashes by names that are the same on every machine.
-Result<LockTable> hashes_of(const std::map<std::string, fs::path>& files) {
+Result<LockTable> hashes_of(const std::map<std::string, fs::path>& files, FileHashes& hashes) {
   LockTable out;
   for (const auto& [name, file] : files) {
-    AFTERGLOW_TRY(const Hash hash, hash_file(file));
+    AFTERGLOW_TRY(const Hash hash, hashes.of(file));
     out[name] = hash.hex();
   }
   return out;
@@ -94,10 +94,11 @@ Result<Lock> look_lock(const Preset& preset, const fs::path& file_of_preset, con
   Lock lock;
   lock.preset = utf8_text(file_of_preset.filename().string());
   const PortableNames names(preset.path());
+  FileHashes hashes(preset);
   std::set<fs::path> files = inventory.sources, of_frames;
   for (const auto& [file, name] : inventory.depends.files) (inventory.moves ? of_frames : files).insert(file);
-  AFTERGLOW_TRY(lock.files, hashes_of(names.of(files)));
-  AFTERGLOW_TRY(lock.frame_files, hashes_of(names.of(of_frames)));
+  AFTERGLOW_TRY(lock.files, hashes_of(names.of(files), hashes));
+  AFTERGLOW_TRY(lock.frame_files, hashes_of(names.of(of_frames), hashes));
   lock.environment = inventory.depends.environment;
   for (const auto& [name, hash] : inventory.depends.generated) lock.generated[name] = hash.hex();
   for (const auto& [name, value] : options)

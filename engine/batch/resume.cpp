@@ -44,10 +44,11 @@ std::optional<std::string> behind(const std::string& line, const std::string& wo
 
 Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const std::string& options) {
   Hasher hasher;
+  FileHashes hashes(preset);
   hasher.add(version()).add(options);
   // By names that hold for the copies that a farm reads, too.
   for (const auto& [name, file] : PortableNames(preset.path()).of(inventory.sources)) {
-    AFTERGLOW_TRY(const Hash hash, hash_file(file));
+    AFTERGLOW_TRY(const Hash hash, hashes.of(file));
     hasher.add(name).add(hash.hex());
   }
   return hasher.finish();

@@ -24,10 +24,12 @@ namespace afterglow {
 /// Hash of the scripts, the shaders, and `options` (a text with every option that changes pixels). Errors: io.
 Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const std::string& options);
 
-/// Writes and reads what frames are made of. Not thread-safe, but for `record_made`.
+/// Writes and reads what frames of a preset, which must outlive it, are made of. Not thread-safe, but for
+/// `record_made`.
 class FrameNotes {
  public:
-  FrameNotes(const Hash& look, SearchPath path) : look_(look), path_(std::move(path)), names_(path_) {}
+  FrameNotes(const Hash& look, const Preset& preset)
+      : look_(look), path_(preset.path()), names_(path_), hashes_(preset) {}
 
   /// Size and time of every file that the output is made from; taken before they are read. Zero: one is not there.
   static Hash inputs_of(const FrameJob& job);

@@ -165,6 +165,15 @@ FileRecord::Reading::~Reading() {
   if (record_) record_->add(path_, {Kind::content, content(path_), stamp_});
 }
 
+std::optional<Hash> content_seen(const FileProbes& looks, const fs::path& file) {
+  const auto known = looks.find(whole_path(file));
+  struct stat status {};
+  if (known == looks.end() || known->second.kind != Kind::content || known->second.seen.high <= kUnreadable ||
+      stat(file.c_str(), &status) != 0 || static_cast<std::uint64_t>(status.st_size) > kLargest)
+    return std::nullopt;
+  return known->second.seen;
+}
+
 std::vector<fs::path> looked_at(const FileProbes& looks) {
   std::vector<fs::path> paths;
   for (const auto& [path, known] : looks) paths.push_back(path);

@@ -82,6 +82,10 @@ class FileRecord {
 /// A look of that kind, now.
 FileProbe inspect(const std::filesystem::path& path, FileProbe::Kind kind);
 
+/// The hash of a file's content as it was when it was looked at first, as hash_file has it. None: no content was looked
+/// at, or it is above 64 MiB.
+std::optional<Hash> content_seen(const FileProbes& looks, const std::filesystem::path& file);
+
 /// All paths.
 std::vector<std::filesystem::path> looked_at(const FileProbes& looks);
 

@@ -57,6 +57,8 @@ struct Watcher::State {
       why_polling = "asked for";
     else if (events.get() < 0)
       why_polling = fmt::format("no inotify: {}", std::strerror(errno));
+    else if (wake.get() < 0)  // then it wakes by itself
+      why_polling = fmt::format("no eventfd: {}", std::strerror(errno));
     always_polling = why_polling;
   }
 

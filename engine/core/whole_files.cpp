@@ -3,6 +3,7 @@
 
 #include <poll.h>
 #include <sys/inotify.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,6 +17,12 @@ namespace {
 constexpr int kPause = 100;        // ms
 constexpr double kSettled = 2000;  // ms
 constexpr std::uint32_t kWhole = IN_CLOSE_WRITE | IN_MOVED_TO, kWriting = IN_MODIFY | IN_CREATE;
+
+/// A file that came with this name alone is one that somebody has begun to write. Links come to what is there already.
+bool is_begun(const std::filesystem::path& file) {
+  struct stat status {};
+  return lstat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 1;
+}
 
 Hash stamp_now(const std::filesystem::path& file) { return inspect(file, FileProbe::Kind::stamp).seen; }
 
@@ -44,13 +51,16 @@ void WholeFiles::take_events() {
     for (ssize_t at = 0; at < size;) {
       const auto* event = reinterpret_cast<const inotify_event*>(buffer.data() + at);
       at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+      if (event->mask & IN_Q_OVERFLOW)  // some were lost, and with them what was closed
+        for (auto& [path, file] : files_) file.open = false;
       const auto folder = folders_.find(event->wd);
       if (folder == folders_.end() || event->len == 0) continue;
       for (const auto& name : folder->second) {
         const auto path = name / event->name;
         File& file = files_[path];
-        file.open = (event->mask & kWhole) == 0;
-        if (!file.open) file.closed = stamp_now(path);
+        const bool closed = (event->mask & kWhole) != 0;
+        file.open = !closed && ((event->mask & IN_MODIFY) != 0 || is_begun(path));
+        if (closed) file.closed = stamp_now(path);
       }
     }
 }

@@ -12,6 +12,7 @@ namespace afterglow {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{100};  // with a script whose files have changed meanwhile
+constexpr std::size_t kMostSaid = 1000;  // messages that are not repeated; a frame may print others each time
 constexpr std::chrono::milliseconds kStarving{250};  // without a new stack: a build is finished, overtaken or not
 
 constexpr Clock::rep kNever = Clock::time_point::max().time_since_epoch().count();
@@ -37,6 +38,7 @@ LiveBuilder::LiveBuilder(Device& device, std::filesystem::path preset, const Liv
       files_(options.watch, options.follow
                                 ? [this](Clock::time_point since, bool polled) { files_may_differ(since, polled); }
                                 : Watcher::Look()) {
+  const std::lock_guard lock(mutex_);  // what polls has begun
   request_.overrides = options.stack.preset.overrides;
   request_.arguments = options.stack.preset.arguments;
   wanted_.request = true;
@@ -172,7 +174,9 @@ BuiltStack LiveBuilder::new_stack() {
     }
     {
       const std::lock_guard lock(said_mutex_);
-      if (!said_.insert(message).second) return;
+      auto& said = severity == Severity::warning ? said_ : noted_;
+      if (said.size() >= kMostSaid) said.clear();
+      if (!said.insert(message).second) return;
     }
     severity == Severity::warning ? diagnostics_.warn(message) : diagnostics_.note(message);
   });
@@ -294,6 +298,7 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
     const std::lock_guard lock(said_mutex_);
     const std::lock_guard heard_lock(built.heard->mutex);
     said_ = {built.heard->warnings.begin(), built.heard->warnings.end()};
+    noted_.clear();
     built.heard->built = true;
   }
   BuiltParts old;

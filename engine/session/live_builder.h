@@ -139,7 +139,7 @@ class LiveBuilder {
   LiveStack::Counters counters_;
 
   std::mutex said_mutex_;
-  std::set<std::string> said_;  ///< messages that were passed on, while each build says them again
+  std::set<std::string> said_, noted_;  ///< warnings and notes that were passed on, while each build says them again
 
   FollowedFiles files_;
   std::thread thread_;

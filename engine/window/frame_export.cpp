@@ -24,24 +24,32 @@ bool is_played(const Footage& footage, const fs::path& file) {
   return false;
 }
 
-/// The frame that is shown, among all there are.
-std::string key_of(Player& player) {
-  const ShownFrame& shown = player.shown();
+/// The picture that is shown; none: another footage has come.
+std::optional<int> picture_of(const Player& player) {
+  const int position = player.shown().position;
   const Footage& footage = player.footage();
-  const bool known = shown.position >= 0 && shown.position < footage.frames();
-  return fmt::format("{} {} {}", known ? footage.file(footage.frame(shown.position).picture).string() : "", shown.name,
-                     shown.number);
+  if (position < 0 || position >= footage.frames()) return std::nullopt;
+  return footage.frame(position).picture;
+}
+
+/// The frame that is shown, among all there are.
+std::string key_of(const Player& player) {
+  const ShownFrame& shown = player.shown();
+  const auto picture = picture_of(player);
+  return fmt::format("{} {} {}", picture ? player.footage().file(*picture).string() : "", shown.name, shown.number);
 }
 
 }  // namespace
 
-Result<fs::path> FrameExport::file_for(const std::string& picture, int number) const {
+Result<fs::path> FrameExport::file_for(const Player& player) const {
+  const int number = player.shown().number;
   std::error_code none;
   const bool video = !to_.empty() && is_one_output(to_.string());  // the frame goes beside it
   if (to_.empty() || video || fs::is_directory(to_, none) || !new_folder(to_.string()).empty()) {
-    // "clip.mp4, frame 7" is a name for people.
-    const std::string stem = fs::path(picture.substr(0, picture.find(','))).stem().string();
-    const std::string frame = picture.find(',') == std::string::npos ? "" : "." + std::to_string(number);
+    const auto picture = picture_of(player);
+    const fs::path name = picture ? player.footage().file(*picture) : fs::path(player.shown().name);
+    const std::string stem = name.stem().string();
+    const std::string frame = picture && player.footage().movie(*picture) ? "." + std::to_string(number) : "";
     return (video ? to_.parent_path() : to_) / (stem + frame + "_graded.exr");
   }
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(to_.string()));
@@ -50,7 +58,7 @@ Result<fs::path> FrameExport::file_for(const std::string& picture, int number) c
 
 /// The file that the shown frame goes to. Errors: it is one that is played; names that are no pattern.
 Result<fs::path> FrameExport::free_file(Player& player) {
-  AFTERGLOW_TRY(const fs::path wanted, file_for(player.shown().name, player.shown().number));
+  AFTERGLOW_TRY(const fs::path wanted, file_for(player));
   const std::string frame = key_of(player);
   fs::path file = wanted;
   std::error_code none;

@@ -27,8 +27,8 @@ class FrameExport {
   void begin(Player& player, Ui& ui);
   /// In each turn: tells what was written or why not.
   void poll(Ui& ui);
-  /// The file that a frame of that name and number goes to.
-  Result<std::filesystem::path> file_for(const std::string& picture, int number) const;
+  /// The file that the shown frame goes to, where nothing lies in its place.
+  Result<std::filesystem::path> file_for(const Player& player) const;
 
  private:
   struct Written {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <condition_variable>
@@ -100,6 +101,24 @@ class Watch : public testing::Test {
   std::condition_variable changed_;
   int probes_ = 0;
 };
+
+/// Then nothing can wake it: it looks again and again, and ends.
+TEST_F(Watch, WithoutAnEventOfItsOwnItPolls) {
+  const int next = open("/dev/null", O_RDONLY);
+  ASSERT_GE(next, 0);
+  close(next);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit one_more = before;
+  one_more.rlim_cur = static_cast<rlim_t>(next) + 1;  // inotify takes it
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &one_more), 0);
+  watch({folder_ / "look.lua"});
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(watcher_->method().substr(0, 7), "polling");
+  write(folder_ / "look.lua", "one");
+  EXPECT_TRUE(looked());
+  watcher_.reset();
+}
 
 TEST_F(Watch, SeesEachWayOfSaving) {
   const fs::path file = folder_ / "look.lua", other = folder_ / "look.lua~";

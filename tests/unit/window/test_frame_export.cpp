@@ -91,6 +91,14 @@ TEST_F(FrameExports, FilesThatAreThereStay) {
   EXPECT_EQ(write(later), "written: out_4.exr") << "what another session wrote is nobody's here";
 }
 
+TEST_F(FrameExports, NamesAreThoseOfTheFiles) {
+  fs::copy_file(folder_ / "a.1.exr", folder_ / "take,2.exr");
+  ASSERT_TRUE(player_->open_footage({.inputs = {(folder_ / "take,2.exr").string()}}));
+  turn();
+  FrameExport folder(folder_ / "graded/", diagnostics_);
+  EXPECT_EQ(write(folder), "written: graded/take,2_graded.exr");
+}
+
 TEST_F(FrameExports, BesideAVideoAndInANewFolder) {
   FrameExport video(folder_ / "out.mp4", diagnostics_);
   EXPECT_EQ(write(video), "written: a.1_graded.exr");
