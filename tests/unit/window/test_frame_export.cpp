@@ -93,7 +93,7 @@ TEST_F(FrameExports, FilesThatAreThereStay) {
 
 TEST_F(FrameExports, NamesAreThoseOfTheFiles) {
   fs::copy_file(folder_ / "a.1.exr", folder_ / "take,2.exr");
-  ASSERT_TRUE(player_->open_footage({.inputs = {(folder_ / "take,2.exr").string()}}));
+  ASSERT_TRUE(player_->open_footage({(folder_ / "take,2.exr").string()}));
   turn();
   FrameExport folder(folder_ / "graded/", diagnostics_);
   EXPECT_EQ(write(folder), "written: graded/take,2_graded.exr");
