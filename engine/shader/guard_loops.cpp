@@ -6,8 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "core/saturated.h"
-#include "shader/spirv_loops.h"
+#include "shader/loop_weights.h"
 
 namespace afterglow {
 namespace {
@@ -15,73 +14,10 @@ namespace {
 constexpr std::uint32_t kFirstVersion = 0x00010300;  // from here on there are storage buffers as a class of their own
 constexpr std::uint32_t kNamesAllVersion = 0x00010400;  // from here on entry points name all their variables
 
-/// Which loops need a guard, and how many turns a turn of each stands for: those of the loops of constants within.
-class Weights {
- public:
-  Weights(const Module& module, const std::vector<Loop>& loops) : code_(module.code), loops_(loops) {
-    for (std::size_t at = 0; at < code_.size(); ++at)
-      if (code_[at].op == spv::OpFunction) functions_[code_[at].result] = at;
-    guarded_.resize(loops.size());
-    weights_.assign(loops.size(), 1);
-    for (const auto& [id, at] : functions_) (void)turns_of_function(id);
-  }
-  bool guarded(std::size_t loop) const { return guarded_[loop]; }
-  bool any() const { return std::ranges::find(guarded_, true) != guarded_.end(); }
-  std::uint32_t weight(std::size_t loop) const {
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(weights_[loop], kMaxTurns));
-  }
-
- private:
-  std::uint64_t turns_of_function(std::uint32_t id) {
-    if (const auto known = turns_.find(id); known != turns_.end()) return known->second;
-    turns_[id] = 0;  // there is no recursion in GLSL; elsewhere it ends here
-    return turns_[id] = turns_within(-1, functions_.at(id));
-  }
-
-  /// Turns of the unguarded loops directly in a loop (−1: a function), and in what is called there.
-  std::uint64_t turns_within(int around, std::size_t function) {
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < loops_.size(); ++i)
-      if (loops_[i].parent == around && loops_[i].function == function) sum = saturated_sum({sum, turns_of(i)});
-    std::uint32_t label = 0;
-    for (std::size_t at = function; code_[at].op != spv::OpFunctionEnd; ++at) {
-      if (code_[at].op == spv::OpLabel) label = code_[at].result;
-      if (code_[at].op == spv::OpFunctionCall && innermost(label, function) == around)
-        sum = saturated_sum({sum, turns_of_function(code_[at].words[3])});
-    }
-    return sum;
-  }
-
-  int innermost(std::uint32_t label, std::size_t function) const {
-    int found = -1;
-    for (std::size_t i = 0; i < loops_.size(); ++i)
-      if (loops_[i].function == function && loops_[i].blocks.contains(label) &&
-          (found < 0 || loops_[i].blocks.size() < loops_[static_cast<std::size_t>(found)].blocks.size()))
-        found = static_cast<int>(i);
-    return found;
-  }
-
-  std::uint64_t turns_of(std::size_t loop) {
-    weights_[loop] = saturated_sum({1, turns_within(static_cast<int>(loop), loops_[loop].function)});
-    const auto most = loops_[loop].most_turns;
-    const std::uint64_t turns = most ? saturated_product({*most, weights_[loop]}) : kSaturated;
-    guarded_[loop] = turns > kFewTurns;
-    return guarded_[loop] ? 0 : turns;
-  }
-
-  const std::vector<Instruction>& code_;
-  const std::vector<Loop>& loops_;
-  std::map<std::uint32_t, std::size_t> functions_;
-  std::map<std::uint32_t, std::uint64_t> turns_;  ///< of functions, without those of guarded loops
-  std::vector<bool> guarded_;
-  std::vector<std::uint64_t> weights_;
-};
-
 class Guard {
  public:
-  Guard(Module& module, std::uint32_t binding) : module_(module), loops_(find_loops(module)), weights_(module, loops_) {
-    binding_ = binding;
-  }
+  Guard(Module& module, std::uint32_t binding)
+      : module_(module), loops_(find_loops(module)), weights_(module, loops_), binding_(binding) {}
 
   /// False: nothing is guarded, and the module is as it was.
   bool run() {
@@ -173,6 +109,8 @@ class Guard {
     const std::uint32_t own = type(spv::OpTypePointer, {spv::StorageClassPrivate, int_});
     turns_ = variable(own, spv::StorageClassPrivate);
     where_ = variable(own, spv::StorageClassPrivate);
+    for (std::size_t i = 0; i < loops_.size(); ++i)
+      if (weights_.guarded(i) && weights_.waits(i)) turns_of_[i] = variable(own, spv::StorageClassPrivate);
     const std::uint32_t block = declare_words(spv::OpTypeStruct, {int_});
     word_pointer_ = type(spv::OpTypePointer, {spv::StorageClassStorageBuffer, int_});
     buffer_ = variable(declare_words(spv::OpTypePointer, {spv::StorageClassStorageBuffer, block}),
@@ -181,6 +119,20 @@ class Guard {
                     Instruction::of_words(spv::OpDecorate, {block, spv::DecorationBlock}),
                     Instruction::of_words(spv::OpDecorate, {buffer_, spv::DecorationDescriptorSet, 0}),
                     Instruction::of_words(spv::OpDecorate, {buffer_, spv::DecorationBinding, binding_})};
+    if (weights_.module_waits()) declare_for_groups();
+  }
+
+  void declare_for_groups() {
+    told_ = variable(type(spv::OpTypePointer, {spv::StorageClassWorkgroup, int_}), spv::StorageClassWorkgroup);
+    for (const Instruction& i : module_.code)
+      if (i.op == spv::OpDecorate && i.words[2] == spv::DecorationBuiltIn &&
+          i.words[3] == spv::BuiltInLocalInvocationIndex)
+        index_ = i.words[1];
+    if (index_ != 0) return;
+    index_ = variable(type(spv::OpTypePointer, {spv::StorageClassInput, uint_}), spv::StorageClassInput);
+    decorations_.push_back(
+        Instruction::of_words(spv::OpDecorate, {index_, spv::DecorationBuiltIn, spv::BuiltInLocalInvocationIndex}));
+    inputs_.push_back(index_);
   }
 
   // ----------------------------------------------------------------------------------------------------- code
@@ -193,6 +145,12 @@ class Guard {
   }
   static void store(Code& to, std::uint32_t pointer, std::uint32_t value) {
     to.push_back(Instruction::of_words(spv::OpStore, {pointer, value}));
+  }
+  /// What is left of the turns that a loop takes from. Loops with barriers have their own, which are the same for all
+  /// of a workgroup: all of it leaves them at once.
+  std::uint32_t turns_of(std::size_t loop) const {
+    const auto own = turns_of_.find(loop);
+    return own == turns_of_.end() ? turns_ : own->second;
   }
   /// Notes the loop as the one that ran out, unless one has before.
   void note(Code& to, std::size_t loop, std::uint32_t out_of_turns) {
@@ -222,7 +180,7 @@ class Guard {
     const std::int64_t by = std::abs(std::int64_t{c.step});
     if (by != 1) last = add(code, spv::OpUDiv, uint_, {last, constant(by, false)});  // the number of the last turn
 
-    const std::uint32_t had = add(code, spv::OpLoad, int_, {turns_});
+    const std::uint32_t had = add(code, spv::OpLoad, int_, {turns_of(loop)});
     const std::uint32_t used_up = add(code, spv::OpSLessThan, bool_, {had, constant(0)});
     const std::uint32_t left =
         add(code, spv::OpBitcast, uint_, {add(code, spv::OpSelect, int_, {used_up, constant(0), had})});
@@ -238,7 +196,7 @@ class Guard {
     if (weight != 1) used = add(code, spv::OpIMul, uint_, {used, constant(weight, false)});
     const std::uint32_t rest = add(code, spv::OpISub, int_, {had, add(code, spv::OpBitcast, int_, {used})});
     const std::uint32_t after = add(code, spv::OpSelect, int_, {fits, rest, constant(-1)});
-    store(code, turns_, add(code, spv::OpSelect, int_, {turns, after, had}));
+    store(code, turns_of(loop), add(code, spv::OpSelect, int_, {turns, after, had}));
     const std::uint32_t good = add(code, spv::OpLogicalOr, bool_, {add(code, spv::OpLogicalNot, bool_, {turns}), fits});
     note(code, loop, add(code, spv::OpLogicalNot, bool_, {good}));
 
@@ -251,9 +209,9 @@ class Guard {
   void count_turns(std::size_t loop) {
     const Loop& l = loops_[loop];
     Code& code = before_[l.head];
-    const std::uint32_t had = add(code, spv::OpLoad, int_, {turns_});
+    const std::uint32_t had = add(code, spv::OpLoad, int_, {turns_of(loop)});
     const std::uint32_t left = add(code, spv::OpISub, int_, {had, constant(weights_.weight(loop))});
-    store(code, turns_, left);
+    store(code, turns_of(loop), left);
     const std::uint32_t goes_on = add(code, spv::OpSGreaterThanEqual, bool_, {left, constant(0)});
     instead_[l.head + 1] = {
         Instruction::of_words(spv::OpBranchConditional, {goes_on, module_.code[l.head + 1].words[1], l.merge})};
@@ -262,7 +220,7 @@ class Guard {
         module_.code, [&](const Instruction& i) { return i.op == spv::OpLabel && i.result == l.merge; });
     const auto behind = static_cast<std::size_t>(merge - module_.code.begin()) + 1;
     Code at_end;
-    const std::uint32_t now = add(at_end, spv::OpLoad, int_, {turns_});
+    const std::uint32_t now = add(at_end, spv::OpLoad, int_, {turns_of(loop)});
     note(at_end, loop, add(at_end, spv::OpSLessThan, bool_, {now, constant(0)}));
     at_end.insert(at_end.end(), before_[behind].begin(), before_[behind].end());
     before_[behind] = std::move(at_end);
@@ -279,6 +237,28 @@ class Guard {
     return Instruction::of_words(spv::OpReturnValue, {zero});
   }
 
+  std::uint32_t load_word(Code& code) {
+    const std::uint32_t word = add(code, spv::OpAccessChain, word_pointer_, {buffer_, constant(0)});
+    return add(code, spv::OpLoad, int_, {word});
+  }
+  /// One invocation of a workgroup reads it for all: others may write it meanwhile.
+  std::uint32_t load_word_together(Code& code) {
+    const std::uint32_t index = add(code, spv::OpLoad, uint_, {index_});
+    const std::uint32_t is_first = add(code, spv::OpIEqual, bool_, {index, constant(0, false)});
+    const std::uint32_t yes = module_.fresh(), behind = module_.fresh();
+    code.push_back(Instruction::of_words(spv::OpSelectionMerge, {behind, spv::SelectionControlMaskNone}));
+    code.push_back(Instruction::of_words(spv::OpBranchConditional, {is_first, yes, behind}));
+    code.push_back(Instruction::of_words(spv::OpLabel, {yes}));
+    store(code, told_, load_word(code));
+    code.push_back(Instruction::of_words(spv::OpBranch, {behind}));
+    code.push_back(Instruction::of_words(spv::OpLabel, {behind}));
+    const std::uint32_t group = constant(spv::ScopeWorkgroup, false);
+    const std::uint32_t memory =
+        constant(spv::MemorySemanticsAcquireReleaseMask | spv::MemorySemanticsWorkgroupMemoryMask, false);
+    code.push_back(Instruction::of_words(spv::OpControlBarrier, {group, group, memory}));
+    return add(code, spv::OpLoad, int_, {told_});
+  }
+
   /// The turns of an invocation, and what it tells when they are used up.
   void begin_and_end() {
     const auto entry = std::ranges::find(module_.code, spv::OpEntryPoint, &Instruction::op);
@@ -286,14 +266,22 @@ class Guard {
     std::size_t at = 0;
     while (module_.code[at].op != spv::OpFunction || module_.code[at].result != main) ++at;
     while (module_.code[at].op != spv::OpLabel) ++at;
+    const std::size_t label = at;
     do ++at;
     while (module_.code[at].op == spv::OpVariable);
     Code code;
-    const std::uint32_t word = add(code, spv::OpAccessChain, word_pointer_, {buffer_, constant(0)});
-    const std::uint32_t told = add(code, spv::OpLoad, int_, {word});
+    const std::uint32_t told = told_ == 0 ? load_word(code) : load_word_together(code);
     const std::uint32_t goes_on = add(code, spv::OpIEqual, bool_, {told, constant(0)});
+    const std::uint32_t turns = add(code, spv::OpSelect, int_, {goes_on, constant(kMaxTurns), constant(0)});
     store(code, where_, told);
-    store(code, turns_, add(code, spv::OpSelect, int_, {goes_on, constant(kMaxTurns), constant(0)}));
+    store(code, turns_, turns);
+    for (const auto& [loop, own] : turns_of_) store(code, own, turns);
+    if (told_ != 0) {  // what comes from the first block comes from this one now
+      const std::uint32_t first = module_.code[label].result;
+      instead_[label] = {Instruction::of_words(spv::OpLabel, {module_.fresh()})};
+      code.push_back(Instruction::of_words(spv::OpBranch, {first}));
+      code.push_back(Instruction::of_words(spv::OpLabel, {first}));
+    }
     code.insert(code.end(), before_[at].begin(), before_[at].end());
     before_[at] = std::move(code);
     for (; module_.code[at].op != spv::OpFunctionEnd; ++at) {
@@ -318,10 +306,15 @@ class Guard {
     bool declared = false, decorated = false;
     for (std::size_t at = 0; at < module_.code.size(); ++at) {
       Instruction& i = module_.code[at];
-      // Before, they name inputs and outputs alone.
-      if (i.op == spv::OpEntryPoint && module_.header[1] >= kNamesAllVersion) {
-        i.words.insert(i.words.end(), {turns_, where_, buffer_});
-        i.words[0] += 3u << spv::WordCountShift;
+      if (i.op == spv::OpEntryPoint) {
+        Words named = inputs_;
+        if (module_.header[1] >= kNamesAllVersion) {  // before, they name inputs and outputs alone
+          named.insert(named.end(), {turns_, where_, buffer_});
+          for (const auto& [loop, own] : turns_of_) named.push_back(own);
+          if (told_ != 0) named.push_back(told_);
+        }
+        i.words.insert(i.words.end(), named.begin(), named.end());
+        i.words[0] += static_cast<std::uint32_t>(named.size()) << spv::WordCountShift;
       }
       const bool is_type = i.op >= spv::OpTypeVoid && i.op <= spv::OpTypeForwardPointer;
       if (is_type && !std::exchange(decorated, true)) out.insert(out.end(), decorations_.begin(), decorations_.end());
@@ -339,13 +332,16 @@ class Guard {
 
   Module& module_;
   std::vector<Loop> loops_;
-  Weights weights_;
-  std::uint32_t binding_ = 0;
+  LoopWeights weights_;
+  const std::uint32_t binding_;
   Code declared_, decorations_;
   std::map<std::size_t, Code> before_, instead_;  ///< by place in the module as it was
   std::map<std::pair<std::int64_t, bool>, std::uint32_t> constants_;
   std::uint32_t int_ = 0, uint_ = 0, bool_ = 0, word_pointer_ = 0;
   std::uint32_t turns_ = 0, where_ = 0, buffer_ = 0;  ///< what is left of an invocation's turns; the loop; the word
+  std::map<std::size_t, std::uint32_t> turns_of_;     ///< the same of loops with barriers
+  std::uint32_t told_ = 0, index_ = 0;  ///< where there are barriers: the word for the workgroup; who an invocation is
+  Words inputs_;                        ///< that were not there
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ struct LoopsGuarded {
 
 /// The word is 0, or 1 + the number of the loop, in the order of the module, that ran out of turns. Counting loops cost
 /// a few instructions each, others one more step a turn; a module without loops that need it, or one that is not as
-/// expected, is left as it is. Results are the same bits.
+/// expected, is left as it is. Results are the same bits. A workgroup leaves loops with barriers together.
 LoopsGuarded guard_loops(const std::vector<std::uint32_t>& spirv, std::uint32_t binding);
 
 }  // namespace afterglow

@@ -132,6 +132,34 @@ TEST_F(EndlessLoops, RegionsReadNothingThatIsNotMade) {
   }
 }
 
+/// Invocations that turned other loops more often than others do not leave one with a barrier alone: the others would
+/// wait for them for ever.
+TEST_F(EndlessLoops, WorkgroupsLeaveLoopsWithBarriersTogether) {
+  const std::string text =
+      "uniform sampler2D source;\nuniform float turns;\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
+      "shared float highest;\nvoid wait() {\n  barrier();\n}\n"
+      "vec4 compute_at(ivec2 pixel) {\n  vec4 c = fetch(source, pixel);\n  float own = 0.0;\n"
+      "  while (own < 1000.0 * float(pixel.x)) own += 1.0;\n"
+      "  for (float left = turns; left > 0.5; left -= 1.0) wait();\n"
+      "  for (int i = 0; i < int(turns); ++i) barrier();\n  return vec4(own);\n}\n";
+  const Size group{8, 8};
+  std::vector<float> pixels;
+  EXPECT_EQ(outcome(text, &pixels, group, {{"turns", number(30000)}}), "ok");
+  ASSERT_EQ(pixels.size(), 256u);
+  EXPECT_EQ(pixels[0], 0);
+  EXPECT_EQ(pixels[std::size_t{4} * 7], 7000);
+  EXPECT_THAT(outcome(text, nullptr, group, {{"turns", number(40000)}}),
+              HasSubstr(".glsl:12: error: a loop did not end"));
+
+  KernelDesc desc;
+  desc.sample = KernelStage{.shader = *library_->find("loop1"), .constants = {}, .label = "s"};
+  desc.config.guard_loops = true;
+  const auto kernel = compiler_->compile(desc);
+  ASSERT_TRUE(kernel) << kernel.error().text();
+  EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(kernel->spirv));
+  EXPECT_GE(kernel->shared_bytes, 8u) << "of the shader, and of the guard";
+}
+
 /// The first pixel that runs out of turns ends the frame: one by one, these would take hours.
 TEST_F(EndlessLoops, EndTheirFrame) {
   EXPECT_THAT(outcome(sample("for (;;) for (int i = 0; i < 4000; ++i) c = sin(c) + cos(c.bgra * float(i));"), nullptr,
