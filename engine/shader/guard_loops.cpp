@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "shader/loop_weights.h"
+#include "shader/weight.h"
+#include "shader/workgroup.h"
 
 namespace afterglow {
 namespace {
@@ -16,8 +18,13 @@ constexpr std::uint32_t kNamesAllVersion = 0x00010400;  // from here on entry po
 
 class Guard {
  public:
-  Guard(Module& module, std::uint32_t binding)
-      : module_(module), loops_(find_loops(module)), weights_(module, loops_), binding_(binding) {}
+  /// `may_share`: a workgroup has memory left for a word.
+  Guard(Module& module, std::uint32_t binding, bool may_share)
+      : module_(module),
+        loops_(find_loops(module)),
+        weights_(module, loops_),
+        binding_(binding),
+        may_share_(may_share) {}
 
   /// False: nothing is guarded, and the module is as it was.
   bool run() {
@@ -119,7 +126,7 @@ class Guard {
                     Instruction::of_words(spv::OpDecorate, {block, spv::DecorationBlock}),
                     Instruction::of_words(spv::OpDecorate, {buffer_, spv::DecorationDescriptorSet, 0}),
                     Instruction::of_words(spv::OpDecorate, {buffer_, spv::DecorationBinding, binding_})};
-    if (weights_.module_waits()) declare_for_groups();
+    if (!turns_of_.empty() && may_share_) declare_for_groups();
   }
 
   void declare_for_groups() {
@@ -334,21 +341,24 @@ class Guard {
   std::vector<Loop> loops_;
   LoopWeights weights_;
   const std::uint32_t binding_;
+  const bool may_share_;
   Code declared_, decorations_;
   std::map<std::size_t, Code> before_, instead_;  ///< by place in the module as it was
   std::map<std::pair<std::int64_t, bool>, std::uint32_t> constants_;
   std::uint32_t int_ = 0, uint_ = 0, bool_ = 0, word_pointer_ = 0;
   std::uint32_t turns_ = 0, where_ = 0, buffer_ = 0;  ///< what is left of an invocation's turns; the loop; the word
   std::map<std::size_t, std::uint32_t> turns_of_;     ///< the same of loops with barriers
-  std::uint32_t told_ = 0, index_ = 0;  ///< where there are barriers: the word for the workgroup; who an invocation is
-  Words inputs_;                        ///< that were not there
+  std::uint32_t told_ = 0,
+                index_ = 0;  ///< where there are such loops: the word for the workgroup; who an invocation is
+  Words inputs_;             ///< that were not there
 };
 
 }  // namespace
 
 LoopsGuarded guard_loops(const std::vector<std::uint32_t>& spirv, std::uint32_t binding) {
   auto module = parse(spirv);
-  if (!module || !Guard(*module, binding).run()) return {spirv, false};
+  const bool may_share = shared_bytes(spirv) + sizeof(std::uint32_t) <= kMaxSharedBytes;
+  if (!module || !Guard(*module, binding, may_share).run()) return {spirv, false};
   return {module->join(), true};
 }
 

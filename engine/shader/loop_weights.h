@@ -22,8 +22,6 @@ class LoopWeights {
   std::uint32_t weight(std::size_t loop) const;
   /// Invocations of a workgroup wait for each other in it.
   bool waits(std::size_t loop) const { return waits_[loop]; }
-  /// They do so anywhere.
-  bool module_waits() const { return !waiting_.empty(); }
 
  private:
   std::uint64_t turns_of_function(std::uint32_t id);
