@@ -5,8 +5,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
-#include <list>
-#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -14,6 +12,7 @@
 
 #include "core/stopwatch.h"
 #include "play/packed_picture.h"
+#include "play/recently_used.h"
 
 namespace afterglow {
 /// A picture as it is kept.
@@ -42,11 +41,11 @@ struct ReadAhead::State {
   mutable std::mutex mutex;
   std::condition_variable work, done;
   std::vector<int> wanted;
-  std::map<int, std::shared_ptr<const KeptPicture>> pictures;
-  std::list<int> used;  ///< keys of `pictures`, the one used last at the front
+  RecentlyUsed<int, std::shared_ptr<const KeptPicture>> pictures;
+  std::set<int> failed;  ///< keys of those among them that are errors
   std::set<int> reading;
-  std::uint64_t bytes = 0, expected = 0;  ///< of the pictures; of one that has yet to be read
-  std::uint64_t epoch = 0;                ///< grows when everything is thrown away
+  std::uint64_t bytes = 0, pixels = 0, expected = 0;  ///< of the pictures; bytes of one that has yet to be read
+  std::uint64_t epoch = 0;                            ///< grows when everything is thrown away
   Stats stats;
   double total_milliseconds = 0;
   bool ending = false;
@@ -72,8 +71,8 @@ std::optional<int> ReadAhead::State::next() const {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const int key = wanted[i];
-    if (const auto found = pictures.find(key); found != pictures.end()) {
-      sum += found->second->bytes;
+    if (const auto* found = pictures.find(key)) {
+      sum += (*found)->bytes;
       continue;
     }
     sum += expected;
@@ -86,30 +85,26 @@ std::optional<int> ReadAhead::State::next() const {
 }
 
 void ReadAhead::State::drop(int key) {
-  const auto found = pictures.find(key);
-  bytes -= found->second->bytes;
-  pictures.erase(found);
-  used.remove(key);
+  const KeptPicture& gone = **pictures.find(key);
+  bytes -= gone.bytes;
+  pixels -= gone.pixels;
+  failed.erase(key);
+  pictures.erase(key);
 }
 
 /// Room for so many bytes, at the cost of what nobody wants, then of what is wanted later than `before`.
 bool ReadAhead::State::make_room(std::uint64_t more, std::size_t before) {
   const auto fits = [&] { return bytes + more <= options.max_bytes; };
   while (!fits()) {
-    const auto unwanted = std::find_if(used.rbegin(), used.rend(), [&](int key) { return !is_wanted(key); });
-    int victim = -1;
-    if (unwanted != used.rend()) {
-      victim = *unwanted;
-    } else {
-      std::size_t furthest = before;
-      for (const auto& [key, picture] : pictures)
-        if (rank(key) > furthest) {
-          furthest = rank(key);
-          victim = key;
-        }
-    }
-    if (victim < 0) return false;
-    drop(victim);
+    const auto& kept = pictures.entries();
+    const auto unwanted =
+        std::find_if(kept.rbegin(), kept.rend(), [&](const auto& one) { return !is_wanted(one.key); });
+    std::optional<int> victim;
+    if (unwanted != kept.rend()) victim = unwanted->key;
+    for (std::size_t i = wanted.size(); !victim && i > before + 1; --i)
+      if (pictures.contains(wanted[i - 1])) victim = wanted[i - 1];
+    if (!victim) return false;
+    drop(*victim);
     ++stats.evicted;
   }
   return true;
@@ -181,9 +176,10 @@ void ReadAhead::State::take(std::shared_ptr<const KeptPicture> picture) {
   if (!is_wanted(key) && (picture->failed || bytes + picture->bytes > options.max_bytes)) return;
   if (!make_room(picture->bytes, rank(key)) && rank(key) > 0) return;
   bytes += picture->bytes;
+  pixels += picture->pixels;
   stats.most_bytes = std::max(stats.most_bytes, bytes);
-  pictures[key] = std::move(picture);
-  used.push_front(key);
+  if (picture->failed) failed.insert(key);
+  pictures.put(key, std::move(picture));
 }
 
 void ReadAhead::State::run() {
@@ -247,15 +243,12 @@ void ReadAhead::want(const std::vector<int>& keys) {
     State& s = *state_;
     if (keys == s.wanted) return;
     s.wanted = keys;
-    std::vector<int> stale;  // errors that nobody looks at: the file may be better when it is wanted again
-    for (const auto& [key, picture] : s.pictures)
-      if (picture->failed && !s.is_wanted(key)) stale.push_back(key);
-    for (const int key : stale) s.drop(key);
-    for (auto key = keys.rbegin(); key != keys.rend(); ++key)
-      if (s.pictures.contains(*key)) {
-        s.used.remove(*key);
-        s.used.push_front(*key);
-      }
+    // Errors that nobody looks at: the file may be better when it is wanted again.
+    for (auto at = s.failed.begin(); at != s.failed.end();) {
+      const int key = *at++;
+      if (!s.is_wanted(key)) s.drop(key);
+    }
+    for (auto key = keys.rbegin(); key != keys.rend(); ++key) s.pictures.touch(*key);
   }
   state_->work.notify_all();
 }
@@ -264,9 +257,9 @@ std::shared_ptr<const ReadPicture> ReadAhead::find(int key) const {
   std::shared_ptr<const KeptPicture> kept;
   {
     const std::lock_guard lock(state_->mutex);
-    const auto found = state_->pictures.find(key);
-    if (found == state_->pictures.end()) return nullptr;
-    kept = found->second;
+    const auto* found = state_->pictures.find(key);
+    if (!found) return nullptr;
+    kept = *found;
   }
   return state_->open(kept);
 }
@@ -287,7 +280,7 @@ std::shared_ptr<const ReadPicture> ReadAhead::wait(int key) {
       s.work.notify_all();
       s.done.wait(lock, [&] { return s.pictures.contains(key); });
     }
-    kept = s.pictures.at(key);
+    kept = *s.pictures.find(key);
   }
   return s.open(kept);
 }
@@ -299,8 +292,8 @@ void ReadAhead::forget() {
     ++s.epoch;
     s.reading.clear();
     s.pictures.clear();
-    s.used.clear();
-    s.bytes = s.expected = 0;
+    s.failed.clear();
+    s.bytes = s.pixels = s.expected = 0;
   }
   state_->work.notify_all();
 }
@@ -311,7 +304,7 @@ ReadAhead::Stats ReadAhead::stats() const {
   stats.bytes = state_->bytes;
   stats.max_bytes = state_->options.max_bytes;
   stats.pictures = static_cast<int>(state_->pictures.size());
-  for (const auto& [key, picture] : state_->pictures) stats.pixels += picture->pixels;
+  stats.pixels = state_->pixels;
   for (const int key : state_->wanted) {
     if (!state_->pictures.contains(key)) break;
     ++stats.ahead;

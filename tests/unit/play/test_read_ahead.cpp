@@ -100,6 +100,18 @@ TEST(ReadAhead, WhatIsBehindMakesRoomForWhatIsAhead) {
   EXPECT_NE(cache.ahead.find(2), nullptr);
   EXPECT_EQ(cache.ahead.stats().evicted, 1u);
   EXPECT_LE(cache.ahead.stats().most_bytes, 3 * kPictureBytes);
+  EXPECT_EQ(cache.ahead.stats().pixels, 3u * 10 * 10);
+}
+
+TEST(ReadAhead, WhatIsWantedLastMakesRoomForWhatIsDue) {
+  Cache cache(3, 1);
+  cache.ahead.want({0, 1, 2});
+  cache.wait_for(3);
+  cache.ahead.want({3, 2, 0, 1});
+  cache.ahead.wait(3);
+  EXPECT_FALSE(cache.ahead.has(1));
+  EXPECT_TRUE(cache.ahead.has(0));
+  EXPECT_TRUE(cache.ahead.has(2));
 }
 
 TEST(ReadAhead, WhatFitsStaysForTheNextLap) {
