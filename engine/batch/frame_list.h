@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "batch/earlier_files.h"
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "image/movie.h"
@@ -23,14 +24,14 @@ struct FrameJob {
   LayerChoice depth, normal, motion;  ///< patterns resolved for this frame
   /// Frames of one sequence have the same: the pattern, or a file's name without its number.
   std::string sequence{};
-  std::shared_ptr<Movie> movie{};                ///< of a video's frame; `input` is the video
-  int movie_frame = 0;                           ///< in it, from 0
-  std::optional<double> time{};                  ///< of a video's frame, in seconds from the first
-  double fps = 0;                                ///< of the video; 0: unknown
-  bool passing = false;                          ///< from a stream: its pixels go when it is done
-  std::size_t missing = 0;                       ///< frames before it that are not there; a video holds their places
-  std::vector<std::filesystem::path> earlier{};  ///< files of earlier frames that the output depends on
-  std::string made_of{};                         ///< what is noted behind the output, see resume.h; empty: nothing
+  std::shared_ptr<Movie> movie{};  ///< of a video's frame; `input` is the video
+  int movie_frame = 0;             ///< in it, from 0
+  std::optional<double> time{};    ///< of a video's frame, in seconds from the first
+  double fps = 0;                  ///< of the video; 0: unknown
+  bool passing = false;            ///< from a stream: its pixels go when it is done
+  std::size_t missing = 0;         ///< frames before it that are not there; a video holds their places
+  EarlierFiles earlier{};          ///< files of earlier frames that the output depends on
+  std::string made_of{};           ///< what is noted behind the output, see resume.h; empty: nothing
 
   /// Every file that the output is made from.
   std::vector<std::filesystem::path> sources() const;

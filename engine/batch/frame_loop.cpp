@@ -176,7 +176,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   const bool follows = options_.histories && begun_;
   const double step = follows ? frame.job.frame - *begun_ : 1;
   const auto planning = Clock::now();
-  if (notes_) reading->inputs = FrameNotes::inputs_of(frame.job);
+  if (notes_) reading->inputs = notes_->inputs_of(frame.job);
   const bool known = planned_ && planned_->job == &frame.job && step == 1;
   auto planned = known ? Result<PlannedFrame>(*std::exchange(planned_, std::nullopt))
                        : planner_.plan(frame.job, step, options_.histories && !begun_);

@@ -34,6 +34,11 @@ std::string stamp_of(const fs::path& file) {
   return fmt::format("{} {}.{:09}", status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
 
+/// Of a file among others; zero: it is not there.
+Hash named_stamp(const fs::path& file, const std::string& stamp) {
+  return stamp.empty() ? Hash{} : Hasher().add(file.filename().string()).add(stamp).finish();
+}
+
 /// What stands behind a word and a space; none: the line begins otherwise.
 std::optional<std::string> behind(const std::string& line, const std::string& word) {
   if (!line.starts_with(word + " ")) return std::nullopt;
@@ -55,14 +60,26 @@ Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const s
 }
 
 Hash FrameNotes::inputs_of(const FrameJob& job) {
+  const EarlierFiles& earlier = job.earlier;
+  SequenceStamps* stamps =
+      earlier.of ? &stamps_.try_emplace(earlier.of, earlier.of->files.size()).first->second : nullptr;
+  std::size_t place = earlier.of ? earlier.of->begin_of(job.frame) : 0;  // of its own files, for the frames behind it
   Hasher hasher;
-  for (const auto& files : {job.sources(), job.earlier})
-    for (const auto& file : files) {
-      const std::string stamp = stamp_of(file);
-      if (stamp.empty()) return {};
-      hasher.add(file.filename().string()).add(stamp);
-    }
-  return hasher.finish();
+  bool all = true;
+  for (const auto& file : job.sources()) {
+    const std::string stamp = stamp_of(file);
+    all = all && !stamp.empty();
+    hasher.add(file.filename().string()).add(stamp);
+    if (stamps && place < earlier.of->files.size() && earlier.of->files[place] == file)
+      stamps->set(place++, named_stamp(file, stamp));
+  }
+  if (!all) return {};
+  if (!stamps || earlier.files().empty()) return hasher.finish();
+  const auto before = stamps->of(earlier.begin, earlier.end, [&](std::size_t at) {
+    const fs::path& file = earlier.of->files[at];
+    return named_stamp(file, stamp_of(file));
+  });
+  return before ? hasher.add(before->hex()).finish() : Hash{};
 }
 
 std::string FrameNotes::text(const Hash& inputs, const Dependencies& depends) {

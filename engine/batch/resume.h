@@ -10,11 +10,14 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "batch/frame_list.h"
 #include "batch/inventory.h"
 #include "batch/run_report.h"
+#include "batch/sequence_stamps.h"
 #include "core/hash.h"
 #include "core/result.h"
 #include "script/preset.h"
@@ -31,8 +34,10 @@ class FrameNotes {
   FrameNotes(const Hash& look, const Preset& preset)
       : look_(look), path_(preset.path()), names_(path_), hashes_(preset) {}
 
-  /// Size and time of every file that the output is made from; taken before they are read. Zero: one is not there.
-  static Hash inputs_of(const FrameJob& job);
+  /// Size and time of every file that the output is made from. To be asked before the frame is read, and of the frames
+  /// of a sequence by number: each looks at its own files, and those of earlier frames are as those frames found them.
+  /// Zero: one is not there.
+  Hash inputs_of(const FrameJob& job);
   /// What is to be noted of a frame (FrameJob::made_of): `inputs`, and what its passes were made of.
   std::string text(const Hash& inputs, const Dependencies& depends);
   /// True when the output is the one that was noted, and would be made of the same.
@@ -45,6 +50,7 @@ class FrameNotes {
   SearchPath path_;
   PortableNames names_;
   FileHashes hashes_;
+  std::map<std::shared_ptr<const SequenceFiles>, SequenceStamps> stamps_;
 };
 
 /// Removes what killed runs on this machine have left half-written in the folders of these outputs; returns how many

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "batch/grouped.h"
 #include "image/sequence.h"
 
 namespace afterglow {
@@ -12,35 +13,34 @@ namespace {
 /// The frames of one sequence that there are, by number.
 using Frames = std::map<int, FrameJob>;
 
+/// What was asked for of one sequence.
+using Sequence = std::vector<FrameRecord*>;
+
+/// In the order in which they were given.
+std::vector<Sequence> sequences_of(FrameRecords& records) {
+  return grouped(records, [](const FrameRecord& record) { return record.job.sequence; });
+}
+
 /// Asked for, and on disk.
-Frames frames_of(const std::string& sequence, const FrameRecords& records, const FrameListRequest& request) {
+Frames frames_of(const Sequence& sequence, const FrameListRequest& request) {
   Frames frames;
-  if (const auto pattern = parse_pattern(sequence); pattern && pattern->numbered)
+  const FrameJob& first = sequence.front()->job;
+  if (const auto pattern = parse_pattern(first.sequence); pattern && pattern->numbered)
     if (const auto files = find_frames(*pattern, std::nullopt))
       for (const auto& file : *files)
-        if (auto job = job_of(request, sequence, file)) frames.emplace(file.frame, std::move(job).value());
+        if (auto job = job_of(request, first.sequence, file)) frames.emplace(file.frame, std::move(job).value());
   // Those of a video are all there; of a stream, only what comes.
-  const auto own = std::ranges::find(records, sequence, [](const FrameRecord& r) { return r.job.sequence; });
-  if (own != records.end() && own->job.movie && !own->job.passing)
-    for (int frame = 0; frame < own->job.movie->frames(); ++frame)
-      if (auto job = job_of(request, own->job.movie, frame)) frames.emplace(frame + 1, std::move(job).value());
-  for (const auto& record : records)
-    if (record.job.sequence == sequence) frames.insert_or_assign(record.job.frame, record.job);
+  if (first.movie && !first.passing)
+    for (int frame = 0; frame < first.movie->frames(); ++frame)
+      if (auto job = job_of(request, first.movie, frame)) frames.emplace(frame + 1, std::move(job).value());
+  for (const FrameRecord* record : sequence) frames.insert_or_assign(record->job.frame, record->job);
   return frames;
 }
 
-/// Sequences in the order in which they were given.
-std::vector<std::string> sequences_of(const FrameRecords& records) {
-  std::vector<std::string> out;
-  for (const auto& record : records)
-    if (std::ranges::find(out, record.job.sequence) == out.end()) out.push_back(record.job.sequence);
-  return out;
-}
-
-std::vector<FrameRecord*> waiting_by_number(const std::string& sequence, FrameRecords& records) {
+std::vector<FrameRecord*> waiting_by_number(const Sequence& sequence) {
   std::vector<FrameRecord*> out;
-  for (auto& record : records)
-    if (record.job.sequence == sequence && record.state == FrameRecord::State::waiting) out.push_back(&record);
+  for (FrameRecord* record : sequence)
+    if (record->state == FrameRecord::State::waiting) out.push_back(record);
   std::ranges::stable_sort(out, {}, [](const FrameRecord* record) { return record->job.frame; });
   return out;
 }
@@ -69,6 +69,8 @@ void add_sequence(Schedule& out, const Frames& frames, const std::vector<FrameRe
       out.earlier.push_back({.job = **job});
       // Of the kind that is asked for, so that one program makes both; it is not written.
       out.earlier.back().job.output = record->job.output;
+      // What it finds of its files, those behind it are noted to depend on.
+      out.earlier.back().job.earlier = {record->job.earlier.of};
       out.frames.push_back({&out.earlier.back(), true, !follows && job == between.rbegin()});
     }
     out.frames.push_back({record, false, !follows && between.empty()});
@@ -76,9 +78,25 @@ void add_sequence(Schedule& out, const Frames& frames, const std::vector<FrameRe
   }
 }
 
-}  // namespace
-
-namespace {
+/// Those that these records look back to; no others, so that each record's lie side by side.
+std::shared_ptr<const SequenceFiles> earlier_files(const Frames& there, const Sequence& records, int pre_roll) {
+  std::vector<const FrameJob*> jobs;
+  for (const auto& [number, job] : there) jobs.push_back(&job);
+  // Of how many records look back to a frame, from the frame before.
+  std::vector<std::ptrdiff_t> change(jobs.size() + 1);
+  for (const FrameRecord* record : records) {
+    const auto end = std::ranges::lower_bound(jobs, record->job.frame, {}, &FrameJob::frame) - jobs.begin();
+    ++change[static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - pre_roll, 0))];
+    --change[static_cast<std::size_t>(end)];
+  }
+  auto out = std::make_shared<SequenceFiles>();
+  std::ptrdiff_t wanted = 0;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    wanted += change[i];
+    if (wanted > 0) out->add(jobs[i]->frame, jobs[i]->sources());
+  }
+  return out;
+}
 
 Schedule counted(Schedule schedule) {
   std::size_t index = 0;
@@ -99,17 +117,17 @@ Schedule plain_schedule(FrameRecords& frames) {
 Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll) {
   Schedule out;
   for (const auto& sequence : sequences_of(frames))
-    add_sequence(out, frames_of(sequence, frames, request), waiting_by_number(sequence, frames), pre_roll);
+    add_sequence(out, frames_of(sequence, request), waiting_by_number(sequence), pre_roll);
   return counted(std::move(out));
 }
 
 void note_earlier_files(FrameRecords& frames, const FrameListRequest& request, int pre_roll) {
   for (const auto& sequence : sequences_of(frames)) {
-    const Frames there = frames_of(sequence, frames, request);
-    for (auto& record : frames) {
-      if (record.job.sequence != sequence) continue;
-      for (const FrameJob* job : before(there, record.job.frame, pre_roll, nullptr))
-        for (auto& file : job->sources()) record.job.earlier.push_back(std::move(file));
+    const auto files = earlier_files(frames_of(sequence, request), sequence, pre_roll);
+    if (files->files.empty()) continue;
+    for (FrameRecord* record : sequence) {
+      FrameJob& job = record->job;
+      job.earlier = {files, files->first_before(job.frame, pre_roll), files->begin_of(job.frame)};
     }
   }
 }

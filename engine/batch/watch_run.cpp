@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "core/file.h"
 #include "core/whole_files.h"
@@ -17,9 +19,9 @@ using State = FrameRecord::State;
 /// A frame that is waited for.
 struct Watched {
   FrameRecord* record = nullptr;
-  std::vector<std::size_t> before;  ///< frames that reach its pixels
-  std::optional<Hash> now, made;    ///< its files as they are, and as they were when it was made last
-  bool due = true;                  ///< it is to be made
+  std::size_t first = 0;          ///< of the frames that reach its pixels: from there to before this one
+  std::optional<Hash> now, made;  ///< its files as they are, and as they were when it was made last
+  bool due = true;                ///< it is to be made
 };
 
 /// By number within each sequence.
@@ -27,10 +29,12 @@ std::vector<Watched> watched_frames(FrameRecords& frames, int earlier) {
   std::vector<Watched> out;
   for (auto& frame : frames) out.push_back({.record = &frame, .due = frame.state == State::waiting});
   std::ranges::stable_sort(
-      out, {}, [](const Watched& one) { return std::pair(one.record->job.sequence, one.record->job.frame); });
-  for (std::size_t i = 0; i < out.size(); ++i)
-    for (std::size_t k = i; k-- > 0 && i - k <= static_cast<std::size_t>(earlier);)
-      if (out[k].record->job.sequence == out[i].record->job.sequence) out[i].before.push_back(k);
+      out, {}, [](const Watched& one) { return std::tie(one.record->job.sequence, one.record->job.frame); });
+  std::size_t begin = 0;  // of the sequence
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i].record->job.sequence != out[begin].record->job.sequence) begin = i;
+    out[i].first = i - std::min(i - begin, static_cast<std::size_t>(earlier));
+  }
   return out;
 }
 
@@ -41,23 +45,32 @@ WholeFiles watch_inputs(const FrameRecords& frames) {
   return WholeFiles(folders);
 }
 
-/// Looks at all files once more; what has changed since it was made is due again, with what it reaches.
-void look_again(std::vector<Watched>& frames, WholeFiles& watch) {
-  std::vector<bool> changed(frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    Watched& one = frames[i];
-    one.now = stamp_of(one.record->job.sources(), [&](const auto& file) { return watch.whole(file); });
-    if (!one.made && !one.due) one.made = one.now;  // up to date when the run began
-    changed[i] = one.made && one.now && *one.now != *one.made;
-  }
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    if (changed[i] || std::ranges::any_of(frames[i].before, [&](std::size_t k) { return changed[k]; }))
-      frames[i].due = true;
+/// How many there are among the first frames, for any number of these: between two places lies the difference.
+template <class Is>
+std::vector<std::size_t> counts(const std::vector<Watched>& frames, const Is& is) {
+  std::vector<std::size_t> out(frames.size() + 1);
+  for (std::size_t i = 0; i < frames.size(); ++i) out[i + 1] = out[i] + (is(frames[i]) ? 1 : 0);
+  return out;
 }
 
-bool can_be_made(const std::vector<Watched>& frames, const Watched& one) {
-  return one.due && one.now &&
-         std::ranges::all_of(one.before, [&](std::size_t k) { return frames[k].now.has_value(); });
+/// Looks at all files once more; what has changed since it was made is due again, with what it reaches.
+void look_again(std::vector<Watched>& frames, WholeFiles& watch) {
+  for (Watched& one : frames) {
+    one.now = stamp_of(one.record->job.sources(), [&](const auto& file) { return watch.whole(file); });
+    if (!one.made && !one.due) one.made = one.now;  // up to date when the run began
+  }
+  const auto changed = counts(frames, [](const Watched& one) { return one.made && one.now && *one.now != *one.made; });
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (changed[i + 1] > changed[frames[i].first]) frames[i].due = true;
+}
+
+/// Those that are due, and whose files and those of the frames before them are whole.
+std::vector<Watched*> can_be_made(std::vector<Watched>& frames) {
+  const auto missing = counts(frames, [](const Watched& one) { return !one.now; });
+  std::vector<Watched*> out;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (frames[i].due && missing[i + 1] == missing[frames[i].first]) out.push_back(&frames[i]);
+  return out;
 }
 
 }  // namespace
@@ -68,18 +81,21 @@ Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, con
   std::vector<Watched> watched = watched_frames(frames, earlier);
   for (;;) {
     look_again(watched, watch);
-    std::vector<Watched*> batch;
+    const std::vector<Watched*> batch = can_be_made(watched);
     std::vector<State> kept;
-    for (auto& one : watched) {
-      kept.push_back(one.record->state);
-      one.record->state = can_be_made(watched, one) ? State::waiting : State::up_to_date;
-      if (one.record->state != State::waiting) continue;
-      one.record->error.reset();
-      batch.push_back(&one);
+    for (auto& one : watched) kept.push_back(std::exchange(one.record->state, State::up_to_date));
+    for (Watched* one : batch) {
+      one->record->state = State::waiting;
+      one->record->error.reset();
     }
     const Result<void> done = batch.empty() ? Result<void>() : run();
-    for (std::size_t i = 0; i < watched.size(); ++i)
-      if (std::ranges::find(batch, &watched[i]) == batch.end()) watched[i].record->state = kept[i];
+    for (std::size_t i = 0, made = 0; i < watched.size(); ++i) {
+      if (made < batch.size() && batch[made] == &watched[i]) {
+        ++made;
+      } else {
+        watched[i].record->state = kept[i];
+      }
+    }
     if (!done && (fail_fast || done.error().kind != ErrorKind::io)) return done;
     for (Watched* one : batch) {
       one->due = false;

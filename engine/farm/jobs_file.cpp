@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -24,8 +25,13 @@ std::string whole_name(const Job& job, const std::filesystem::path& file) {
 Json files_json(const Job& job, std::span<const FrameRecord> frames) {
   std::set<std::string> inputs;
   Json outputs = Json::array();
+  EarlierFiles named;  // up to where those of the frames before are in already
   for (const auto& frame : frames) {
-    for (const auto& file : frame.job.earlier) inputs.insert(whole_name(job, file));
+    EarlierFiles earlier = frame.job.earlier;
+    if (earlier.of == named.of && earlier.begin >= named.begin)
+      earlier.begin = std::clamp(named.end, earlier.begin, earlier.end);
+    for (const auto& file : earlier.files()) inputs.insert(whole_name(job, file));
+    named = frame.job.earlier;
     for (const auto& file : frame.job.sources()) inputs.insert(whole_name(job, file));
     outputs.push_back(whole_name(job, frame.job.output));
   }

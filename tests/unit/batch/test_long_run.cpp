@@ -11,6 +11,8 @@
 #include <set>
 
 #include "batch/batch_run.h"
+#include "batch/schedule.h"
+#include "batch/watch_run.h"
 #include "image/writer.h"
 #include "temporary_folder.h"
 
@@ -101,6 +103,48 @@ TEST_F(LongRun, NothingIsKeptOfAFrameThatIsDone) {
   constexpr long long kMost =
       32 * (kFrames - kSome - kFirst);  // a note of what each was made of would be three times as much
   EXPECT_LT(after, before + kMost);
+}
+
+/// Of frames that look back to all before them; they need not be there.
+class LongHistory : public testing::Test {
+ protected:
+  static constexpr int kFrames = 2000;
+  static constexpr long long kMostEach = 1000;  // bytes; a list of its own for each would be some hundred times as much
+
+  void SetUp() override {
+    for (int i = 1; i <= kFrames; ++i) {
+      FrameJob job{.frame = i, .input = fmt::format("none/s.{:05}.exr", i), .depth = {}, .normal = {}, .motion = {}};
+      job.sequence = "none/s.#####.exr";
+      frames_.push_back({.job = std::move(job)});
+    }
+  }
+  FrameRecords frames_;
+};
+
+TEST_F(LongHistory, FramesShareTheListOfFilesThatTheyLookBackTo) {
+  const long long before = live_bytes;
+  note_earlier_files(frames_, {}, kFrames);
+  EXPECT_LT(live_bytes - before, kFrames * kMostEach);
+}
+
+TEST_F(LongHistory, WatchingKeepsNoListForEachFrame) {
+  Diagnostics diagnostics;
+  const long long before = live_bytes;
+  long long held = 0;
+  const RunEvents events{diagnostics,
+                         [](std::size_t, std::size_t, const std::string&, double) {},
+                         [] {},
+                         [](const Error&) {},
+                         [](const std::string&) {},
+                         [&] {
+                           held = live_bytes - before;
+                           return true;
+                         }};
+  const auto done = run_watching(frames_, kFrames, false, events, [] { return Result<void>(); });
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().kind, ErrorKind::interrupted);
+  EXPECT_GT(held, 0);
+  EXPECT_LT(held, kFrames * kMostEach);
 }
 
 }  // namespace
