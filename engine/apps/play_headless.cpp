@@ -12,11 +12,6 @@ namespace {
 
 constexpr double kUntilStopped = std::numeric_limits<double>::infinity();
 
-std::uint64_t frames_had(const Player& player) {
-  const PlayerStats stats = player.stats();
-  return stats.shown + stats.unreadable;
-}
-
 /// The first picture and a good build, before the clock runs.
 Result<void> show_first(Player& player) {
   player.settle();
@@ -44,7 +39,7 @@ Result<void> play_headless(Player& player, const HeadlessOptions& options) {
     if (interrupted()) return interrupt_error();
     AFTERGLOW_TRY(const Step step, player.step());
     if (player.shown().failed) return *player.shown().failed;
-    if (options.count && frames_had(player) >= *options.count) break;
+    if (options.count && player.frames_had() >= *options.count) break;
     if (!step.changed) player.wait(options.fast && transport.playing() ? kUntilStopped : step.next);
   }
   transport.pause(player.now());
@@ -52,7 +47,8 @@ Result<void> play_headless(Player& player, const HeadlessOptions& options) {
   const PlayerStats stats = player.stats();
   if (stats.shown == 0 && player.shown().unreadable) return *player.shown().unreadable;
   if (stats.unreadable > 0)
-    return Error{ErrorKind::io, fmt::format("{} of {} frames could not be read", stats.unreadable, frames_had(player))};
+    return Error{ErrorKind::io,
+                 fmt::format("{} of {} frames could not be read", stats.unreadable, player.frames_had())};
   return {};
 }
 

@@ -56,6 +56,7 @@ class Figures {
   void presented(double milliseconds);
   PlayerStats stats() const;
   double fps() const;  ///< PlayerStats::fps
+  std::uint64_t frames_had() const { return shown_ + unreadable; }
 
   std::uint64_t late = 0, unreadable = 0, kept = 0, rebuilding = 0;
 

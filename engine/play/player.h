@@ -167,8 +167,10 @@ class Player {
   /// The window has handed the frame of the last turn to the screen.
   void presented();
   PlayerStats stats() const;
-  /// Of `stats`, for each frame of an interface: sorts nothing.
+  // Of `stats`, for each frame of an interface: these sort nothing.
   double fps() const;
+  /// Shown, or unreadable when they were due.
+  std::uint64_t frames_had() const;
   std::uint64_t late() const;
   /// Times kernels one by one: one with every second frame while playing, the others when nothing else is to do. Off at
   /// first.

@@ -354,6 +354,8 @@ Result<void> Player::open_other(const std::filesystem::path& preset) {
 }
 
 double Player::fps() const { return state_->figures.fps(); }
+
+std::uint64_t Player::frames_had() const { return state_->figures.frames_had(); }
 std::uint64_t Player::late() const { return state_->figures.late; }
 void Player::time_kernels(bool on) { state_->time_kernels = on; }
 std::vector<KernelTime> Player::kernel_times() const { return state_->first->kernel_times(); }

@@ -157,6 +157,8 @@ TEST_F(PlayerTest, AFrameThatCannotBeReadSaysSoAndPlayingGoesOn) {
   EXPECT_FALSE(player.shown().unreadable);
   EXPECT_FLOAT_EQ(result(), 0.75f);
   EXPECT_EQ(player.stats().unreadable, 1u);
+  EXPECT_EQ(player.frames_had(), 3u);
+  EXPECT_EQ(player.stats().shown, 2u);
 }
 
 TEST_F(PlayerTest, PicturesThatAreReadAgainAreShownWhenTheyCome) {
