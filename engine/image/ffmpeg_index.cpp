@@ -175,10 +175,8 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   hide_what_comes_before_the_first_key(index.packets);
   sort_by_time(index);
   std::size_t missing = missing_frames(input, index);
-  // Matroska has no table of frames, but knows when it ends within something.
-  const std::string words = ffmpeg_said();
-  cut_short = cut_short || words.find("prematurely") != std::string::npos || words.find("partial") != std::string::npos;
-  if (cut_short && missing == 0) missing = 1;
+  static_cast<void>(ffmpeg_said());
+  if ((cut_short || input.ends_early()) && missing == 0) missing = 1;
   if (index.order.empty() && missing == 0) return Error{ErrorKind::io, "has no frame that shows"};
   add_missing(index, missing);
   return index;

@@ -47,6 +47,8 @@ std::optional<Error> FfmpegInput::given_up() const {
   return out;
 }
 
+bool FfmpegInput::ends_early() const { return remarks_.ends_early; }
+
 FfmpegInput::~FfmpegInput() {
   if (container_) avformat_close_input(&container_);
 }
@@ -87,6 +89,7 @@ Result<void> FfmpegInput::open_container(const std::string& format, const std::s
   container_ = bytes_->container();
   if (!container_) return failed("there is no memory to open it");
   container_->max_streams = 64;
+  container_->opaque = &remarks_;
   container_->codec_whitelist = av_strdup(kCodecs);
   AVDictionary* given = nullptr;
   av_dict_parse_string(&given, options.c_str(), "=", ":", 0);

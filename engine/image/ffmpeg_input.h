@@ -39,6 +39,8 @@ class FfmpegInput {
   /// Why there is no use in reading on, when that is so: no bytes come, nobody waits for them any more, or the demuxer
   /// reads on and on and finds no packet. It stays so.
   std::optional<Error> given_up() const;
+  /// Once the end has come: it came within something.
+  bool ends_early() const;
 
  private:
   FfmpegInput() = default;
@@ -52,6 +54,7 @@ class FfmpegInput {
   std::string name_;
   SizeLimits limits_;
   std::unique_ptr<FfmpegBytes> bytes_;
+  FfmpegRemarks remarks_;
   AVFormatContext* container_ = nullptr;
   int stream_ = 0;
   const AVCodec* codec_ = nullptr;

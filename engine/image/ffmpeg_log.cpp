@@ -3,6 +3,7 @@
 
 extern "C" {
 #include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
 #include <libavutil/error.h>
 #include <libavutil/log.h>
 }
@@ -23,18 +24,30 @@ namespace {
 
 thread_local std::string said;
 
-void count(void* from) {
+bool is_a(void* from, const char* name) {
   const AVClass* kind = from ? *static_cast<AVClass**>(from) : nullptr;
-  if (!kind || std::strcmp(kind->class_name, "AVCodecContext") != 0) return;
+  return kind && std::strcmp(kind->class_name, name) == 0;
+}
+
+void count(void* from) {
+  if (!is_a(from, "AVCodecContext")) return;
   if (void* errors = static_cast<AVCodecContext*>(from)->opaque) ++*static_cast<FfmpegErrors*>(errors);
+}
+
+/// Matroska: "File ended prematurely"; MP4 and MXF: "partial file".
+void remark(void* from, const char* line) {
+  if (!is_a(from, "AVFormatContext")) return;
+  auto* remarks = static_cast<FfmpegRemarks*>(static_cast<AVFormatContext*>(from)->opaque);
+  if (remarks && (std::strstr(line, "prematurely") || std::strstr(line, "partial file"))) remarks->ends_early = true;
 }
 
 void note_line(void* from, int level, const char* format, va_list arguments) {
   if (level > AV_LOG_ERROR) return;
   count(from);
-  if (!said.empty()) return;
   std::array<char, 512> line{};
   std::vsnprintf(line.data(), line.size(), format, arguments);
+  remark(from, line.data());
+  if (!said.empty()) return;
   said = printable(trim(line.data()));
   while (!said.empty() && said.back() == '.') said.pop_back();
 }

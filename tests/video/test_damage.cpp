@@ -23,6 +23,10 @@ struct DamageCase {
 void PrintTo(const DamageCase& one, std::ostream* out) { *out << one.name; }
 constexpr const char* kFast = "-c:v libx264 -preset veryfast -crf 12 -g 12 -bf 3 -pix_fmt yuv420p";
 
+/// Codecs of sound are not read, which FFmpeg complains of before anything else.
+constexpr const char* kFastWithSound =
+    "-f lavfi -i sine=duration=2 -c:a aac -c:v libx264 -preset veryfast -crf 12 -g 12 -bf 0 -pix_fmt yuv420p";
+
 class Damage : public Clips, public testing::WithParamInterface<DamageCase> {
  protected:
   std::string altered(const std::string& file, const std::string& name, const std::string& bytes) const {
@@ -79,7 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         DamageCase{"front.mp4",
                    "-c:v libx264 -preset veryfast -crf 12 -g 12 -bf 3 -pix_fmt yuv420p -movflags +faststart"},
-        DamageCase{"clip.mkv", kFast}, DamageCase{"clip.avi", "-c:v mjpeg -q:v 2 -pix_fmt yuvj422p"},
+        DamageCase{"clip.mkv", kFast}, DamageCase{"sound.mkv", kFastWithSound},
+        DamageCase{"clip.avi", "-c:v mjpeg -q:v 2 -pix_fmt yuvj422p"},
         DamageCase{"vp9.webm", "-c:v libvpx-vp9 -crf 15 -b:v 0 -g 12 -deadline realtime -cpu-used 8"},
         DamageCase{"ffv1.mkv", "-c:v ffv1 -level 3 -slicecrc 1 -g 1 -pix_fmt gbrp"}),
     [](const auto& info) {
