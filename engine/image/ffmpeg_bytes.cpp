@@ -69,6 +69,7 @@ int FfmpegBytes::read(void* opaque, std::uint8_t* to, int size) {
     const std::size_t count = std::min(bytes.head_.size() - bytes.given_, static_cast<std::size_t>(size));
     std::memcpy(to, bytes.head_.data() + bytes.given_, count);
     bytes.given_ += count;
+    bytes.note(to, count);
     return static_cast<int>(count);
   }
   if (bytes.given_up_) return AVERROR_EXIT;
@@ -84,7 +85,56 @@ int FfmpegBytes::read(void* opaque, std::uint8_t* to, int size) {
     bytes.given_up_ = Error{ErrorKind::io, fmt::format("has no frame within {} MiB that were read", bytes.most_ >> 20)};
     return AVERROR_EXIT;
   }
+  bytes.at_end_ = *got == 0;
+  bytes.note(to, *got);
   return *got > 0 ? static_cast<int>(*got) : AVERROR_EOF;
+}
+
+/// Of what passes by, the beginning and the end are kept.
+void FfmpegBytes::note(const std::uint8_t* bytes, std::size_t count) {
+  constexpr std::size_t kFirst = 4096, kLast = 1 << 16;
+  if (seekable_) return;
+  const auto* text = reinterpret_cast<const char*>(bytes);
+  all_ += count;
+  first_.append(text, std::min(count, kFirst - first_.size()));
+  const std::size_t kept = std::min(count, kLast);
+  if (last_.size() + kept > kLast) last_.erase(0, last_.size() + kept - kLast);
+  last_.append(text + (count - kept), kept);
+}
+
+PlacedBytes FfmpegBytes::again() {
+  struct stat status {};
+  const bool known = seekable_ && fstat(reader_->descriptor(), &status) == 0 && status.st_size > 0;
+  return {.size = known ? static_cast<std::uint64_t>(status.st_size) : all_,
+          .look = [this](std::uint64_t at, std::size_t count) { return look(at, count); }};
+}
+
+std::string_view FfmpegBytes::look(std::uint64_t at, std::size_t count) {
+  const auto part = [&](const std::string& kept, std::uint64_t begin) {
+    return at < begin || at - begin > kept.size() ? std::string_view()
+                                                  : std::string_view(kept).substr(at - begin, count);
+  };
+  if (!seekable_) {
+    const std::string_view first = part(first_, 0);
+    return first.size() == count ? first : part(last_, all_ - last_.size());
+  }
+  if (const std::string_view kept = part(window_, window_at_); kept.size() == count) return kept;
+  constexpr std::size_t kWindow = 4096;
+  // FFmpeg goes on where it was.
+  const int descriptor = given_up_ ? -1 : reader_->descriptor();
+  const off_t before = lseek(descriptor, 0, SEEK_CUR);
+  window_.assign(std::max(count, kWindow), '\0');
+  window_at_ = at;
+  std::size_t have = 0;
+  for (bool more = lseek(descriptor, static_cast<off_t>(at), SEEK_SET) >= 0; more && have < count;) {
+    const auto got = reader_->read(window_.data() + have, window_.size() - have);
+    if (!got) given_up_ = got.error();
+    more = got && *got > 0;
+    have += more ? *got : 0;
+  }
+  window_.resize(have);
+  if (!given_up_) lseek(descriptor, before, SEEK_SET);
+  return part(window_, window_at_);
 }
 
 std::int64_t FfmpegBytes::seek(void* opaque, std::int64_t to, int whence) {

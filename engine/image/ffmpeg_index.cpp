@@ -176,7 +176,9 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   sort_by_time(index);
   std::size_t missing = missing_frames(input, index);
   static_cast<void>(ffmpeg_said());
-  if ((cut_short || input.ends_early()) && missing == 0) missing = 1;
+  cut_short = input.ends_early() || cut_short;
+  if (auto reason = input.given_up()) return *std::move(reason);
+  if (cut_short && missing == 0) missing = 1;
   if (index.order.empty() && missing == 0) return Error{ErrorKind::io, "has no frame that shows"};
   add_missing(index, missing);
   return index;

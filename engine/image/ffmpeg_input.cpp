@@ -47,7 +47,9 @@ std::optional<Error> FfmpegInput::given_up() const {
   return out;
 }
 
-bool FfmpegInput::ends_early() const { return remarks_.ends_early; }
+bool FfmpegInput::ends_early() {
+  return remarks_.ends_early || (bytes_->end_is_known() && afterglow::ends_early(format_, bytes_->again(), last_));
+}
 
 FfmpegInput::~FfmpegInput() {
   if (container_) avformat_close_input(&container_);
@@ -75,6 +77,7 @@ Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(std::unique_ptr<FfmpegByt
                                                        const std::string& options) {
   std::unique_ptr<FfmpegInput> input(new FfmpegInput());
   input->name_ = name;
+  input->format_ = format;
   input->limits_ = limits;
   input->bytes_ = std::move(bytes);
   static_cast<void>(ffmpeg_said());
@@ -154,6 +157,8 @@ int FfmpegInput::read(AVPacket& packet) {
     const int got = av_read_frame(container_, &packet);
     if (got < 0) return got;
     // Empty packets are frames that an encoder left out; to a decoder they would be the end.
+    if (packet.pos >= 0)
+      last_ = std::max(last_, static_cast<std::uint64_t>(packet.pos) + static_cast<unsigned>(packet.size));
     if (packet.stream_index == stream_ && packet.size > 0) {
       bytes_->packet_came();
       return 0;

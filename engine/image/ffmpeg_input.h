@@ -40,7 +40,7 @@ class FfmpegInput {
   /// reads on and on and finds no packet. It stays so.
   std::optional<Error> given_up() const;
   /// Once the end has come: it came within something.
-  bool ends_early() const;
+  bool ends_early();
 
  private:
   FfmpegInput() = default;
@@ -51,12 +51,13 @@ class FfmpegInput {
   Result<void> choose_stream();
   Error failed(const std::string& why) const;
 
-  std::string name_;
+  std::string name_, format_;
   SizeLimits limits_;
   std::unique_ptr<FfmpegBytes> bytes_;
   FfmpegRemarks remarks_;
   AVFormatContext* container_ = nullptr;
   int stream_ = 0;
+  std::uint64_t last_ = 0;  ///< where the data of the last packet end
   const AVCodec* codec_ = nullptr;
 };
 

@@ -29,6 +29,8 @@ class StreamFrame : public MovieSource {
   std::shared_ptr<FfmpegPlanes> planes_;
 };
 
+constexpr const char* kCut = "is cut off: the stream ends in it";
+
 class FfmpegStream : public MovieFrames {
  public:
   Result<void> open(const StreamRequest& request) {
@@ -43,9 +45,9 @@ class FfmpegStream : public MovieFrames {
       FrameHandle frame(av_frame_alloc());
       const int got = avcodec_receive_frame(codec_.get(), frame.get());
       if (got == 0) return made(std::move(frame));
-      if (got == AVERROR_EOF) return std::shared_ptr<MovieSource>();
-      if (got != AVERROR(EAGAIN) && !draining_) return broken("is damaged");
-      if (draining_) return std::shared_ptr<MovieSource>();
+      if (got != AVERROR_EOF && got != AVERROR(EAGAIN) && !draining_) return broken("is damaged");
+      if ((got == AVERROR_EOF || draining_) && cut_) return broken(kCut);
+      if (got == AVERROR_EOF || draining_) return std::shared_ptr<MovieSource>();
       AFTERGLOW_CHECK(feed());
     }
   }
@@ -59,12 +61,12 @@ class FfmpegStream : public MovieFrames {
     const int read = input_->read(*packet_);
     if (read == AVERROR_EOF && !input_->given_up()) {
       draining_ = true;
+      cut_ = input_->ends_early();
       avcodec_send_packet(codec_.get(), nullptr);
       return {};
     }
     if (auto reason = input_->given_up()) return *std::move(reason);
-    if (read < 0) return broken("is cut off: the stream ends in it");
-    if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return broken("is cut off: the stream ends in it");
+    if (read < 0 || (packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return broken(kCut);
     const int sent = avcodec_send_packet(codec_.get(), packet_.get());
     av_packet_unref(packet_.get());
     return sent < 0 ? Result<void>(broken("is cut off or damaged: " + ffmpeg_error(sent))) : Result<void>();
@@ -95,7 +97,7 @@ class FfmpegStream : public MovieFrames {
   std::shared_ptr<FfmpegPlanes> planes_ = std::make_shared<FfmpegPlanes>();
   MovieFacts facts_;
   long long count_ = 0;
-  bool draining_ = false;
+  bool draining_ = false, cut_ = false;
 };
 
 }  // namespace

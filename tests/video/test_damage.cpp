@@ -96,6 +96,54 @@ INSTANTIATE_TEST_SUITE_P(
 
 using Damaged = Damage;
 
+/// Containers without a table, with sound where they hold some, each cut at many places: in a frame, in sound, in a
+/// head.
+TEST_F(Damaged, AFileThatEndsWithinSomethingIsTold) {
+  const std::string sound = "-f lavfi -i sine=r=48000:d=1 ", quiet = "-an ";
+  for (const auto& [name, arguments] :
+       {std::pair{"a.y4m", quiet + "-pix_fmt yuv444p -f yuv4mpegpipe"},
+        std::pair{"a.ogv", sound + "-c:v libtheora -c:a libvorbis"},
+        std::pair{"a.mxf", sound + "-r 25 -c:v mpeg2video -c:a pcm_s16le"}, std::pair{"a.gif", quiet + "-c:v gif"},
+        std::pair{"a.nut", sound + "-c:v ffv1 -c:a pcm_s16le"},
+        std::pair{"a.ts", sound + "-c:v mpeg2video -r 25 -c:a mp2 -f mpegts"},
+        std::pair{"a.mpg", sound + "-c:v mpeg2video -r 25 -c:a mp2"},
+        std::pair{"a.flv", sound + "-c:v libx264 -preset veryfast -bf 0 -pix_fmt yuv420p -c:a aac -ar 44100"},
+        std::pair{"a.ivf", quiet + "-c:v libvpx -deadline realtime"}, std::pair{"a.apng", quiet + "-f apng -c:v apng"},
+        std::pair{"a.asf", sound + "-c:v mpeg4 -c:a wmav2"},
+        std::pair{"a.webm", sound + "-c:v libvpx -deadline realtime -c:a libopus"}}) {
+    SCOPED_TRACE(name);
+    const std::string file = clip(name, arguments, 24);
+    messages_.clear();
+    const auto whole = open(file);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->facts().missing, 0u);
+    EXPECT_THAT(messages_, testing::Not(Contains(HasSubstr("truncated"))));
+    const std::string bytes = read_file(file).value();
+    for (const std::size_t percent : {50, 58, 67, 74, 83, 90}) {
+      std::size_t size = bytes.size() * percent / 100;
+      if (size % 188 == 0) ++size;  // a transport stream of fewer packets is whole
+      const auto cut = open(altered(file, std::string("cut_") + name, bytes.substr(0, size)));
+      ASSERT_TRUE(cut);
+      EXPECT_EQ(cut->facts().missing, 1u) << percent;
+    }
+  }
+}
+
+/// What muxers write where they cannot seek: sizes that nobody knew.
+TEST_F(Damaged, FilesThatWereWrittenToAPipeAreWhole) {
+  for (const char* arguments : {"-c:v libvpx -deadline realtime -f webm", "-c:v ffv1 -f matroska", "-c:v ffv1 -f nut",
+                                "-c:v mpeg4 -f asf", "-c:v mjpeg -f avi", "-c:v libtheora -f ogg",
+                                "-c:v libvpx -deadline realtime -f ivf", "-c:v gif -f gif", "-c:v apng -f apng"}) {
+    const std::string raw = numbered_frames(12);
+    ffmpeg(fmt::format("-f rawvideo -pix_fmt rgb24 -s {}x{} -r 24 -i '{}' {} - | tee '{}'", kClipWidth, kClipHeight,
+                       raw, arguments, path("piped")));
+    const auto movie = open(path("piped"));
+    ASSERT_TRUE(movie) << arguments;
+    EXPECT_EQ(movie->frames(), 12) << arguments;
+    EXPECT_EQ(movie->facts().missing, 0u) << arguments;
+  }
+}
+
 TEST_F(Damaged, AClipWithoutItsTableIsRefused) {
   const std::string file = clip("clip.mp4", kFast, 12);
   const std::string bytes = read_file(file).value();

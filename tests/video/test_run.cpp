@@ -140,6 +140,29 @@ TEST_F(RunVideos, SinglePicturesComeThroughPipes) {
   EXPECT_EQ(number_in("m.png"), 4);
 }
 
+/// In containers too: in a frame, or in the sound beside it.
+TEST_F(RunVideos, AStreamThatIsCutOffEndsWithExitCode4) {
+  const std::string sound = "-f lavfi -i sine=d=1 -c:a pcm_s16le ";
+  for (const auto& [name, arguments] :
+       {std::pair{"a.y4m", std::string("-an -pix_fmt yuv444p -f yuv4mpegpipe")},
+        std::pair{"a.mkv", sound + "-c:v ffv1 -f matroska"},
+        std::pair{"b.mkv", std::string("-an -c:v ffv1 -f matroska")}, std::pair{"a.nut", sound + "-c:v ffv1 -f nut"},
+        std::pair{"a.ts", sound + "-c:v mpeg2video -r 25 -c:a mp2 -f mpegts"}}) {
+    const std::string file = clip(name, arguments, 24);
+    EXPECT_EQ(shell(fmt::format("cat {0} | AFTERGLOW run look.lua - -o whole.{0}.####.pfm", name)), 0) << said_;
+    EXPECT_TRUE(std::filesystem::exists(path(fmt::format("whole.{}.0024.pfm", name)))) << name;
+    for (const std::size_t percent : {50, 71}) {
+      const std::size_t size = read_file(file).value().size() * percent / 100 / 188 * 188 + 94;
+      const std::string out = fmt::format("cut.{}.{}", name, percent);
+      EXPECT_EQ(shell(fmt::format("head -c {} {} | AFTERGLOW run look.lua - -o {}.####.pfm", size, name, out)), 4)
+          << name << " " << percent;
+      EXPECT_THAT(said_, testing::ContainsRegex("-: error: frame [0-9]+ is (cut off|damaged)")) << name;
+      EXPECT_TRUE(std::filesystem::exists(path(out + ".0008.pfm"))) << name;
+      EXPECT_FALSE(std::filesystem::exists(path(out + ".0021.pfm"))) << name;
+    }
+  }
+}
+
 TEST_F(RunVideos, APipeThatEndsWithinAFrameEndsWithExitCode4) {
   const std::string raw = numbered_frames(3);
   EXPECT_EQ(shell(fmt::format("head -c 130000 '{}' | AFTERGLOW run look.lua - --raw 192x96:rgb24 -o r.####.png", raw)),
