@@ -109,15 +109,25 @@ Length matroska_part(std::string_view head) {
   return size == mask ? std::nullopt : Length(kName + digits + size);
 }
 
+/// AVI: one list of all, or several; of what was written to a pipe the size is not known.
+Length riff_part(std::string_view head) {
+  constexpr std::uint64_t kUnknown = 0xffffffff;
+  if (head.size() < 12) return head.starts_with("RIFF"sv) ? Length(kBeyond) : std::nullopt;
+  const std::uint64_t size = low_first(head, 4, 4);
+  if (!head.starts_with("RIFF"sv) || !head.substr(8).starts_with("AVI"sv) || size == 0 || size == kUnknown)
+    return std::nullopt;
+  return 8 + size;
+}
+
 struct Container {
   std::string_view format;
   std::size_t head;  ///< bytes that tell a part's length
   Length (*length)(std::string_view head);
 };
-constexpr std::array kContainers{Container{"ivf"sv, 12, ivf_part},   Container{"flv"sv, 15, flv_part},
-                                 Container{"mpeg"sv, 14, mpeg_part}, Container{"apng"sv, 8, png_part},
-                                 Container{"mxf"sv, 25, mxf_part},   Container{"asf"sv, 24, asf_part},
-                                 Container{"ogg"sv, 282, ogg_page},  Container{"matroska"sv, 12, matroska_part}};
+constexpr std::array kContainers{
+    Container{"ivf"sv, 12, ivf_part},  Container{"flv"sv, 15, flv_part},  Container{"mpeg"sv, 14, mpeg_part},
+    Container{"apng"sv, 8, png_part},  Container{"mxf"sv, 25, mxf_part},  Container{"asf"sv, 24, asf_part},
+    Container{"avi"sv, 12, riff_part}, Container{"ogg"sv, 282, ogg_page}, Container{"matroska"sv, 12, matroska_part}};
 
 bool ends_in_a_part(const Container& container, const PlacedBytes& bytes) {
   for (std::uint64_t at = 0; at < bytes.size;) {

@@ -97,15 +97,22 @@ void hide_what_comes_before_the_first_key(std::vector<MoviePacket>& packets) {
     if (packet->pts < first->pts && packet->pts != AV_NOPTS_VALUE) packet->shown = false;
 }
 
-/// Frames that the container's own tables tell of, beyond the packets that are there.
-std::size_t missing_frames(FfmpegInput& input, const MovieIndex& index) {
+/// Frames that the container's own tables tell of, beyond the packets that are there. `cut`: the file ends too early.
+/// AVI counts places, of which some may be empty: the one before stays; its stamps are these places' numbers.
+std::size_t missing_frames(FfmpegInput& input, const MovieIndex& index, bool cut) {
   AVStream& stream = input.stream();
   const std::string format = input.container().iformat->name;
-  std::int64_t told = 0;
+  std::int64_t told = 0, there = static_cast<std::int64_t>(index.packets.size());
   if (format.starts_with("mov")) told = avformat_index_get_entries_count(&stream);
-  if (format == "avi") told = stream.nb_frames;
-  const auto there = static_cast<std::int64_t>(index.packets.size());
-  return told > there && told < static_cast<std::int64_t>(kMostPackets) ? static_cast<std::size_t>(told - there) : 0;
+  if (format == "avi" && cut) {
+    told = stream.nb_frames;
+    for (const MoviePacket& packet : index.packets)
+      if (packet.dts != AV_NOPTS_VALUE) there = std::max(there, packet.dts + 1);
+    // What is cut off may be the index alone.
+    if (told > 0 && told <= there) return 0;
+  }
+  const bool more = told > there && told < static_cast<std::int64_t>(kMostPackets);
+  return more ? static_cast<std::size_t>(told - there) : cut ? 1 : 0;
 }
 
 }  // namespace
@@ -174,11 +181,10 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   if (index.packets.empty()) return Error{ErrorKind::io, "has no frame (truncated?)"};
   hide_what_comes_before_the_first_key(index.packets);
   sort_by_time(index);
-  std::size_t missing = missing_frames(input, index);
   static_cast<void>(ffmpeg_said());
   cut_short = input.ends_early() || cut_short;
   if (auto reason = input.given_up()) return *std::move(reason);
-  if (cut_short && missing == 0) missing = 1;
+  const std::size_t missing = missing_frames(input, index, cut_short);
   if (index.order.empty() && missing == 0) return Error{ErrorKind::io, "has no frame that shows"};
   add_missing(index, missing);
   return index;

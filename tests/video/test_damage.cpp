@@ -129,6 +129,24 @@ TEST_F(Damaged, AFileThatEndsWithinSomethingIsTold) {
   }
 }
 
+/// Places without a picture are none that is missing.
+TEST_F(Damaged, AviMayHoldEmptyPlaces) {
+  const std::string varies = clip("varies.mkv", "-c:v ffv1 -vf \"select='not(mod(n,3))'\" -vsync vfr", 24);
+  for (const char* codec : {"mjpeg -q:v 2", "mpeg4 -g 1 -q:v 2"}) {
+    ffmpeg(fmt::format("-i '{}' -c:v {} -vsync vfr -r 24 '{}'", varies, codec, path("varies.avi")));
+    const auto whole = open(path("varies.avi"));
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->frames(), 8) << codec;
+    EXPECT_EQ(whole->facts().missing, 0u);
+    EXPECT_NEAR(whole->time(7), 21 / 24.0, 1e-6);
+    const std::string bytes = read_file(path("varies.avi")).value();
+    const auto cut = open(altered("", "cut.avi", bytes.substr(0, bytes.size() * 6 / 10)));
+    ASSERT_TRUE(cut);
+    EXPECT_GT(cut->facts().missing, 1u) << codec;
+    EXPECT_LE(cut->facts().missing, 21u);
+  }
+}
+
 /// What muxers write where they cannot seek: sizes that nobody knew.
 TEST_F(Damaged, FilesThatWereWrittenToAPipeAreWhole) {
   for (const char* arguments : {"-c:v libvpx -deadline realtime -f webm", "-c:v ffv1 -f matroska", "-c:v ffv1 -f nut",
