@@ -13,6 +13,13 @@ namespace {
 /// A frame of a video file has that file's time; all others follow one another.
 bool has_times(const FrameJob& job) { return job.movie && !job.passing; }
 
+/// Where the file does not say it, that of the others on the average.
+long long length_of_last(const MovieFacts& facts) {
+  const auto& pts = facts.pts;
+  if (facts.last_length > 0) return facts.last_length;
+  return std::max(1LL, (pts.back() - pts.front()) / std::max<long long>(1, static_cast<long long>(pts.size()) - 1));
+}
+
 }  // namespace
 
 Error VideoTimes::of_one() const {
@@ -45,8 +52,7 @@ Result<VideoTime> VideoTimes::of(const FrameJob& job, std::size_t index) {
   if (last_ >= job.movie_frame) return of_one();
   last_ = job.movie_frame;
   whole_ = at + 1 == pts.size();
-  const long long mean = std::max(1LL, (pts.back() - pts.front()) / std::max<long long>(1, pts.size() - 1));
-  return VideoTime{pts[at] - start_, whole_ ? mean : pts[at + 1] - pts[at]};
+  return VideoTime{pts[at] - start_, whole_ ? length_of_last(movie_->facts()) : pts[at + 1] - pts[at]};
 }
 
 std::optional<VideoTime> VideoTimes::held(std::size_t frames, VideoTime last) const {

@@ -73,7 +73,11 @@ std::int64_t near_stamp(std::int64_t stamp) {
 }
 
 MoviePacket noted(const AVPacket& packet, AVCodecID codec, const AccessPointFinder& find) {
-  MoviePacket out{.pts = near_stamp(packet.pts), .dts = near_stamp(packet.dts), .pos = packet.pos, .size = packet.size};
+  MoviePacket out{.pts = near_stamp(packet.pts),
+                  .dts = near_stamp(packet.dts),
+                  .pos = packet.pos,
+                  .size = packet.size,
+                  .duration = near_stamp(std::max<std::int64_t>(packet.duration, 0))};
   out.key = (packet.flags & AV_PKT_FLAG_KEY) != 0;
   out.exact = out.key;
   if (out.key && codec == AV_CODEC_ID_H264) {
@@ -95,6 +99,16 @@ void hide_what_comes_before_the_first_key(std::vector<MoviePacket>& packets) {
   for (auto packet = packets.begin(); packet != first; ++packet) packet->shown = false;
   for (auto packet = first; packet != packets.end(); ++packet)
     if (packet->pts < first->pts && packet->pts != AV_NOPTS_VALUE) packet->shown = false;
+}
+
+/// Of the last frame, where the container holds lengths; elsewhere FFmpeg guesses them from rates, which is better than
+/// nothing for a frame alone.
+long long last_length(const FfmpegInput& input, const MovieIndex& index) {
+  if (index.order.empty()) return 0;
+  const std::string format = input.container().iformat->name;
+  const bool holds = format.starts_with("mov") || format.starts_with("matroska") || format == "gif" || format == "apng";
+  const std::int64_t length = index.packets[static_cast<std::size_t>(index.order.back())].duration;
+  return (holds || index.order.size() == 1) && length > 0 ? length : 0;
 }
 
 /// Frames that the container's own tables tell of, beyond the packets that are there. `cut`: the file ends too early.
@@ -186,6 +200,7 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   if (auto reason = input.given_up()) return *std::move(reason);
   const std::size_t missing = missing_frames(input, index, cut_short);
   if (index.order.empty() && missing == 0) return Error{ErrorKind::io, "has no frame that shows"};
+  index.last_length = last_length(input, index);
   add_missing(index, missing);
   return index;
 }

@@ -14,11 +14,12 @@ namespace afterglow {
 struct MoviePacket {
   std::int64_t pts = 0, dts = 0, pos = 0;
   int size = 0;
-  bool key = false;       ///< decoding can begin here
-  bool exact = false;     ///< and what follows is right from here on; else from the next key packet on
-  bool shown = true;      ///< it makes a frame that shows
-  bool damaged = false;   ///< the file itself says so, or ends in it
-  bool needless = false;  ///< no other frame is made of it
+  std::int64_t duration = 0;  ///< as the container says, or FFmpeg guesses; 0: neither
+  bool key = false;           ///< decoding can begin here
+  bool exact = false;         ///< and what follows is right from here on; else from the next key packet on
+  bool shown = true;          ///< it makes a frame that shows
+  bool damaged = false;       ///< the file itself says so, or ends in it
+  bool needless = false;      ///< no other frame is made of it
 };
 
 struct MovieIndex {
@@ -27,6 +28,7 @@ struct MovieIndex {
   std::vector<int> rank;             ///< frame of each packet; −1: none
   std::vector<long long> pts;        ///< of each frame, and of those that are missing
   std::vector<int> keys;             ///< packets at which decoding can begin
+  long long last_length = 0;         ///< how long the last frame shows, where the container says so; else 0
   std::size_t missing = 0;           ///< frames at the end that the file tells of and does not hold
 
   /// Where decoding has to begin so that this packet's frame comes out whole: in a closed group of pictures its key

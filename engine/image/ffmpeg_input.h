@@ -29,6 +29,7 @@ class FfmpegInput {
   ~FfmpegInput();
 
   AVFormatContext& container() { return *container_; }
+  const AVFormatContext& container() const { return *container_; }
   AVStream& stream() { return *container_->streams[stream_]; }
   const AVCodec& codec() const { return *codec_; }
   /// A decoder for the stream, opened. `errors` counts what it complains of and outlives it. `careful`: on one thread,

@@ -52,6 +52,7 @@ struct MovieFacts {
   Rational rate{0, 1};         ///< frames a second, on the average; 0: unknown
   Rational time_base{1, 1};    ///< seconds of a time stamp's unit
   std::vector<long long> pts;  ///< of each frame that the file has or ought to have, in the order in which they show
+  long long last_length = 0;   ///< how long the last frame shows, in the same unit; 0: the file does not say
   std::size_t missing = 0;     ///< so many at the end are not there: the file is shorter than it says
   std::string time_code;       ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
   std::vector<std::string> notes;  ///< what people may want to know

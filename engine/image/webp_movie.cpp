@@ -116,6 +116,7 @@ class WebpMovie : public MovieSource {
     for (int more = WebPDemuxGetFrame(&demuxer, 1, &frame); more != 0; more = WebPDemuxNextFrame(&frame)) {
       facts_.has_alpha = facts_.has_alpha || makes_holes(frame);
       facts_.pts.push_back(at);
+      facts_.last_length = frame.duration;
       at += frame.duration;
     }
     WebPDemuxReleaseIterator(&frame);

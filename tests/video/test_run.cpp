@@ -79,6 +79,31 @@ TEST_F(RunVideos, TimesAreTheClips) {
   }
 }
 
+/// The last one too, which may be shorter or longer than the others.
+TEST_F(RunVideos, FramesShowAsLongAsTheyDid) {
+  const auto length = [&](const std::string& name) {
+    EXPECT_EQ(shell(fmt::format("ffprobe -v error -show_entries format=duration -of csv=p=0 {} >length", name)), 0)
+        << said_;
+    return std::stod(read_file(path("length")).value());
+  };
+  const std::string codec = std::string(kCodec) + " -bf 0 -vsync passthrough -video_track_timescale 24000";
+  clip("two.mp4", codec + " -vf \"setpts='N*120/24/TB'\"", 2);
+  clip("one.mp4", codec, 1);
+  clip("four.mp4", codec, 4);
+  for (const auto& [name, seconds] :
+       {std::pair{"two", 5 + 1 / 24.0}, std::pair{"one", 1 / 24.0}, std::pair{"four", 4 / 24.0}}) {
+    ASSERT_NEAR(length(fmt::format("{}.mp4", name)), seconds, 2e-3) << name;
+    for (const char* extension : {"mp4", "mkv"}) {
+      ASSERT_EQ(shell(fmt::format("AFTERGLOW run look.lua {0}.mp4 -o {0}.out.{1} --codec h264", name, extension)), 0)
+          << said_;
+      EXPECT_NEAR(length(fmt::format("{}.out.{}", name, extension)), seconds, 2e-3) << name << extension;
+    }
+  }
+  clip("slow.gif", "-vf \"setpts='N*10/24/TB'\" -final_delay 200", 3);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua slow.gif -o slow.mkv --codec ffv1"), 0) << said_;
+  EXPECT_NEAR(length("slow.mkv"), 20 / 24.0 + 2, 0.03);
+}
+
 TEST_F(RunVideos, ATruncatedClipEndsWithExitCode4AndWhatIsWhole) {
   const std::string file = clip("whole.mp4", std::string(kCodec) + " -movflags +faststart");
   const std::string bytes = read_file(file).value();
