@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <fstream>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "batch/resume.h"
 #include "batch/schedule.h"
 #include "batch/sequence_stamps.h"
+#include "core/paths.h"
 #include "temporary_folder.h"
 
 namespace {
@@ -33,6 +36,14 @@ using ::testing::ElementsAre;
 
 class EarlierFilesTest : public testing::Test {
  protected:
+  void SetUp() override {
+    std::ofstream(folder_ / "look.lua") << "return require(\"afterglow\").stack {}\n";
+    shaders_ = std::make_unique<ShaderLibrary>(search_path_for(folder_ / "look.lua", {}));
+    Diagnostics nowhere;
+    auto preset = Preset::load(folder_ / "look.lua", {}, *shaders_, nowhere);
+    ASSERT_TRUE(preset) << preset.error().text();
+    preset_ = std::make_unique<Preset>(std::move(*preset));
+  }
   void make(int frames) {
     for (int i = 1; i <= frames; ++i) write_bytes(file(i), "x");
     request_.inputs = {(folder_ / "s.####.exr").string()};
@@ -56,8 +67,8 @@ class EarlierFilesTest : public testing::Test {
     for (const auto& file : job.earlier.files()) out.push_back(file.filename().string());
     return out;
   }
-  static std::vector<Hash> noted(const FrameRecords& frames) {
-    FrameNotes notes(Hash{}, SearchPath{});
+  std::vector<Hash> noted(const FrameRecords& frames) const {
+    FrameNotes notes(Hash{}, *preset_);
     std::vector<Hash> out;
     for (const auto& frame : frames) out.push_back(notes.inputs_of(frame.job));
     return out;
@@ -69,6 +80,8 @@ class EarlierFilesTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
+  std::unique_ptr<ShaderLibrary> shaders_;
+  std::unique_ptr<Preset> preset_;
   FrameListRequest request_;
 };
 
@@ -132,7 +145,7 @@ TEST_F(EarlierFilesTest, AreNotedAsTheFramesBeforeFoundThem) {
   make(3);
   const FrameRecords frames = records({1, 2, 3}, 3);
   const auto before = noted(frames);
-  FrameNotes notes(Hash{}, SearchPath{});
+  FrameNotes notes(Hash{}, *preset_);
   notes.inputs_of(frames[0].job);
   touch(1);
   EXPECT_EQ(notes.inputs_of(frames[1].job), before[1]);
@@ -145,7 +158,7 @@ TEST_F(EarlierFilesTest, ThePreRollLooksAtItsFilesBeforeItIsRead) {
   make(3);
   FrameRecords frames = records({3}, 2);
   const auto before = noted(frames);
-  FrameNotes notes(Hash{}, SearchPath{});
+  FrameNotes notes(Hash{}, *preset_);
   const Schedule schedule = schedule_with_histories(frames, request_, 2);
   ASSERT_EQ(schedule.frames.size(), 3u);
   for (const auto& scheduled : schedule.frames) {
