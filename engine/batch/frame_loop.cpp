@@ -283,6 +283,7 @@ Result<void> FrameLoop::finish_running() {
   if (const auto& part = reading->request.region)
     crop_picture(picture, *options_.region,
                  {part->x / finer, part->y / finer, part->width / finer, part->height / finer});
+  if (auto taken = sink_.takes(frame.job, picture); !taken) return fail(frame, std::move(taken).error());
   if (events_.interrupted()) return interruption();
   const auto waiting = Clock::now();
   AFTERGLOW_CHECK(finish_writing(std::max<std::size_t>(overlap_.written, 1) - 1));

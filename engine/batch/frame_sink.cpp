@@ -60,6 +60,16 @@ const char* option_of_videos(const FrameLoopOptions& options, bool stream) {
 
 }  // namespace
 
+Result<void> OneSize::takes(const FrameJob& job, const Picture& picture) {
+  const Size size = picture.display_window.size();
+  if (!first_) first_ = size;
+  if (size == *first_) return {};
+  return Error{ErrorKind::io,
+               fmt::format("frame {} has {}x{} pixels, the first had {}x{}; a video has one size", job.frame,
+                           size.width, size.height, first_->width, first_->height),
+               job.input.string()};
+}
+
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const FrameLoopOptions& options,
                                              std::size_t frames, Diagnostics& diagnostics) {
   if (is_video_output(files.output)) return open_video_sink(files.output, options.write, options.fps, diagnostics);

@@ -33,6 +33,9 @@ class FrameSink {
   virtual std::optional<DisplayCodes> codes(const FrameJob&, bool /*has_alpha*/, const FileFacts*) const {
     return std::nullopt;
   }
+  /// Whether a frame can stand with those before: an error is its own, and its place stays empty. Asked before `write`,
+  /// in order, by one thread. Errors: io (of another size).
+  virtual Result<void> takes(const FrameJob&, const Picture&) { return {}; }
   /// A frame; `index` is its place among those that the run was asked for, from 0; the places of frames that failed are
   /// left out. Called from several threads. Where is_one(), what it does behind `turn` is done by one at a time and in
   /// order.
@@ -44,6 +47,16 @@ class FrameSink {
   /// All that can come has come, of so many frames that were asked for (0: of those that came): what was written
   /// appears. Without this call it goes.
   virtual Result<void> finish(std::size_t /*frames*/) { return {}; }
+};
+
+/// Of what holds pictures of one size: that of the first one.
+class OneSize {
+ public:
+  /// Errors: io (another size).
+  Result<void> takes(const FrameJob& job, const Picture& picture);
+
+ private:
+  std::optional<Size> first_;
 };
 
 /// For the output of `files`, into which so many frames are known to go. Errors: usage (options that do not go with

@@ -68,6 +68,7 @@ class FrameBytes {
  public:
   virtual ~FrameBytes() = default;
   virtual Result<std::string> begin(const Picture&, double /*fps*/) { return std::string(); }
+  virtual Result<void> takes(const FrameJob&, const Picture&) { return {}; }
   virtual Result<std::string> frame(const Picture& picture) = 0;
   /// More than one frame can stand behind each other.
   virtual bool many() const { return true; }
@@ -134,13 +135,9 @@ class VideoBytes : public FrameBytes {
     return y4m_ ? header(*layout) : std::string();
   }
 
+  Result<void> takes(const FrameJob& job, const Picture& picture) override { return one_size_.takes(job, picture); }
+
   Result<std::string> frame(const Picture& picture) override {
-    const Size size = picture.display_window.size();
-    if (size != size_)
-      return Error{ErrorKind::io,
-                   fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
-                               size.height, size_.width, size_.height),
-                   kName};
     if (!rules_.layout->alpha && !warned_ && has_transparency(picture)) {
       warned_ = true;
       diagnostics_.warn(fmt::format("{}: {} has no alpha; the pictures are put on black", kName, rules_.layout->name));
@@ -165,6 +162,7 @@ class VideoBytes : public FrameBytes {
   Diagnostics& diagnostics_;
   PackRules rules_;
   Size size_;
+  OneSize one_size_;
   bool warned_ = false;  ///< of alpha
 };
 
@@ -172,6 +170,8 @@ class StreamSink : public FrameSink {
  public:
   explicit StreamSink(std::unique_ptr<FrameBytes> bytes) : bytes_(std::move(bytes)) {}
   Result<void> open() { return out_.take(); }
+
+  Result<void> takes(const FrameJob& job, const Picture& picture) override { return bytes_->takes(job, picture); }
 
   /// A stream has no times: the place of a frame that failed is held by the one before, or by the first one.
   Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture, const Turn& turn) override {

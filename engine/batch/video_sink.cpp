@@ -38,6 +38,8 @@ class VideoSink : public FrameSink {
     return check_replaceable(file_);
   }
 
+  Result<void> takes(const FrameJob& job, const Picture& picture) override { return size_.takes(job, picture); }
+
   /// Once the video is open, a frame is packed while those before it are encoded.
   Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture, const Turn& turn) override {
     std::optional<Result<PackedFrame>> packed;
@@ -112,6 +114,7 @@ class VideoSink : public FrameSink {
   std::filesystem::path file_;
   WriteOptions options_;
   VideoTimes times_;
+  OneSize size_;
   Diagnostics& diagnostics_;
   std::unique_ptr<VideoWriter> writer_;
   std::optional<std::pair<PackedFrame, VideoTime>> last_;  ///< that waits for what comes behind it

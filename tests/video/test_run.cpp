@@ -165,6 +165,32 @@ TEST_F(RunVideos, SinglePicturesComeThroughPipes) {
   EXPECT_EQ(number_in("m.png"), 4);
 }
 
+/// A frame of another size is one that fails: its place stays empty.
+TEST_F(RunVideos, AFrameOfAnotherSizeLeavesItsPlaceEmpty) {
+  clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 9);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mkv -o f.####.pfm && AFTERGLOW run look.lua f.0005.pfm -o s.pfm "
+                  "--size 96x48 && mv s.pfm f.0005.pfm"),
+            0)
+      << said_;
+  EXPECT_EQ(shell("AFTERGLOW run look.lua f.####.pfm -o w.mkv --codec ffv1"), 4);
+  EXPECT_THAT(said_,
+              HasSubstr("f.0005.pfm: error: frame 5 has 96x48 pixels, the first had 192x96; a video has one size"));
+  EXPECT_THAT(said_, HasSubstr("1 of 9 frames failed"));
+  const auto movie = open(path("w.mkv"));
+  ASSERT_TRUE(movie);
+  ASSERT_EQ(movie->frames(), 8);
+  EXPECT_EQ(number_of(read(movie, 3).value()), 4);
+  EXPECT_EQ(number_of(read(movie, 4).value()), 6);
+  EXPECT_NEAR(movie->time(4), 5 / 24.0, 1e-3);
+  EXPECT_EQ(shell("AFTERGLOW run look.lua f.####.pfm -o - | ffmpeg -nostdin -v error -i - -f framecrc - | grep -c ^0, "
+                  ">count"),
+            4)
+      << said_;
+  EXPECT_EQ(read_file(path("count")).value(), "9\n");
+  EXPECT_EQ(shell("AFTERGLOW run look.lua f.####.pfm -o x.mkv --codec ffv1 --fail-fast"), 4);
+  EXPECT_FALSE(std::filesystem::exists(path("x.mkv")));
+}
+
 /// In containers too: in a frame, or in the sound beside it.
 TEST_F(RunVideos, AStreamThatIsCutOffEndsWithExitCode4) {
   const std::string sound = "-f lavfi -i sine=d=1 -c:a pcm_s16le ";
