@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <map>
 #include <set>
 #include <system_error>
@@ -23,7 +24,7 @@ Error usage(std::string message) { return {ErrorKind::usage, std::move(message)}
 Result<LayerChoice> resolve(const LayerChoice& choice, int frame) {
   if (choice.file.empty()) return choice;
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(choice.file.string()));
-  return LayerChoice{pattern.file(frame), choice.name};
+  return LayerChoice{pattern.existing(frame), choice.name};
 }
 
 /// What files that a shell has listed have in common when they are frames of one sequence. No pattern that exists.
@@ -225,9 +226,22 @@ std::string missing_text(const std::vector<FrameFile>& files) {
   return join(gaps);
 }
 
+/// Files that look like frames of the sequence.
+void tell_left_out(const std::string& input, const Pattern& pattern, const LeftOut& others, Diagnostics& diagnostics) {
+  if (others.files == 0) return;
+  const std::string first = others.first.filename().string();
+  const std::string names =
+      others.files == 1 ? first + " is" : fmt::format("{} and {} more are", first, others.files - 1);
+  const std::string digits = pattern.digits == 1
+                                 ? "no zeros in front"
+                                 : fmt::format("{} digits, or more without zeros in front", pattern.digits);
+  diagnostics.warn(fmt::format("{}: {} left out: numbers have {} here, and go to {}", input, names, digits,
+                               std::numeric_limits<int>::max()));
+}
+
 /// Of a sequence that is taken whole. `held`: its frames keep their times. Errors: usage (a video without an end).
 Result<void> tell_gaps(const std::string& input, const std::vector<FrameFile>& files, bool held,
-                          Diagnostics& diagnostics) {
+                       Diagnostics& diagnostics) {
   constexpr int kMostPlaces = 1'000'000;  // as many as a list of frames may name
   const std::string missing = missing_text(files);
   if (missing.empty()) return {};
@@ -251,7 +265,9 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     return add_movie(request, names, pattern.file(0), frames, list, diagnostics);
   if (frames && !pattern.numbered)
     return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
-  AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
+  LeftOut others;
+  AFTERGLOW_TRY(const auto files, find_frames(pattern, frames, &others));
+  tell_left_out(input, pattern, others, diagnostics);
   const bool held = names.takes_all() && request.inputs.size() == 1;
   if (pattern.numbered && !frames) AFTERGLOW_CHECK(tell_gaps(input, files, held, diagnostics));
   for (const auto& [frame, file] : files) {

@@ -67,6 +67,28 @@ int own_number(const fs::path& file) {
   return digits == 0 || digits > kMaxDigits ? 1 : std::stoi(number);
 }
 
+/// Digits, and a sign in front of them.
+bool is_number(std::string_view text) {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  return !text.empty() && std::ranges::all_of(text, is_digit);
+}
+
+/// Sorts by number. Of "-003" and "-0003" the first is the frame.
+void leave_out_twins(const Pattern& pattern, std::vector<FrameFile>& found, LeftOut& others) {
+  std::ranges::sort(found, [&](const FrameFile& a, const FrameFile& b) {
+    return a.frame != b.frame ? a.frame < b.frame : a.file == pattern.file(a.frame) && b.file != a.file;
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (kept > 0 && found[kept - 1].frame == found[i].frame) {
+      others.add(found[i].file);
+    } else {
+      found[kept++] = found[i];
+    }
+  }
+  found.resize(kept);
+}
+
 /// One place for a number in a name: where, how long its text is, and how many digits it asks for.
 struct Place {
   std::size_t begin = 0, length = 0;
@@ -112,6 +134,22 @@ fs::path Pattern::file(int frame) const {
   return fmt::format("{}{:0{}d}{}", prefix, frame, digits, suffix);
 }
 
+fs::path Pattern::file_with_sign(int frame) const {
+  if (!numbered || frame >= 0) return file(frame);
+  return fmt::format("{}-{:0{}d}{}", prefix, -static_cast<long long>(frame), digits, suffix);
+}
+
+fs::path Pattern::existing(int frame) const {
+  if (!numbered || frame >= 0) return file(frame);
+  std::error_code ec;
+  const fs::path other = file_with_sign(frame);
+  return !fs::exists(file(frame), ec) && fs::exists(other, ec) ? other : file(frame);
+}
+
+void LeftOut::add(const fs::path& file) {
+  if (files++ == 0 || file < first) first = file;
+}
+
 Result<Pattern> parse_pattern(const std::string& text) {
   if (text.empty()) return Error{ErrorKind::usage, "an empty file name"};
   std::error_code ignored;
@@ -147,14 +185,15 @@ Result<Pattern> parse_pattern(const std::string& text) {
   return pattern;
 }
 
-Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames) {
+Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames,
+                                           LeftOut* left_out) {
   if (!pattern.numbered) {
     const fs::path file = pattern.file(0);
     return std::vector<FrameFile>{{own_number(file), file}};
   }
   std::vector<FrameFile> found;
   if (frames) {
-    for (const int frame : *frames) found.push_back({frame, pattern.file(frame)});
+    for (const int frame : *frames) found.push_back({frame, pattern.existing(frame)});
     return found;
   }
   const std::string shown =
@@ -162,6 +201,7 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
   const fs::path prefix(pattern.prefix);
   const fs::path folder = prefix.has_parent_path() ? prefix.parent_path() : fs::path(".");
   const std::string stem = prefix.filename().string();
+  LeftOut others;
   std::error_code ec;
   fs::directory_iterator entry(folder, ec);
   if (ec)
@@ -172,17 +212,28 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
         !name.ends_with(pattern.suffix))
       continue;
     const std::string middle = name.substr(stem.size(), name.size() - stem.size() - pattern.suffix.size());
-    if (middle.size() > kMaxDigits + 1) continue;
+    if (!is_number(middle)) continue;
     std::string_view rest = middle;
     const auto frame = take_number(rest);
     // Only the spelling that the pattern itself makes: "shot.007" is no frame of shot.#.
-    if (!frame || !rest.empty() || pattern.file(*frame).filename() != name) continue;
-    found.push_back({*frame, pattern.file(*frame)});
+    const auto is = [&](const fs::path& file) { return file.filename() == name; };
+    if (frame && is(pattern.file(*frame))) {
+      found.push_back({*frame, pattern.file(*frame)});
+    } else if (frame && is(pattern.file_with_sign(*frame))) {
+      found.push_back({*frame, pattern.file_with_sign(*frame)});
+    } else {
+      others.add(entry->path());
+    }
   }
   if (ec)
     return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
-  if (found.empty()) return Error{ErrorKind::io, "no file matches this pattern", shown};
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  if (found.empty()) {
+    const std::string near =
+        others.files > 0 ? ": of " + others.first.filename().string() + " the digits are others" : "";
+    return Error{ErrorKind::io, "no file matches this pattern" + near, shown};
+  }
+  leave_out_twins(pattern, found, others);
+  if (left_out) *left_out = others;
   return found;
 }
 

@@ -21,21 +21,34 @@ struct Pattern {
   int digits = 0;  ///< at least this many, zero-padded
   bool numbered = false;
   std::filesystem::path file(int frame) const;
+  /// The same, with all digits behind the sign of frames before zero: "-0003", as Blender writes them; C has "-003".
+  std::filesystem::path file_with_sign(int frame) const;
+  /// The one of both that is there; `file` where none is.
+  std::filesystem::path existing(int frame) const;
 };
 /// Errors: usage (two places, an unknown % code).
 Result<Pattern> parse_pattern(const std::string& text);
 
-/// Where the number that ends at `end` of a name begins; at `end` where there is none. A minus sign belongs to it behind
-/// a point, an underscore or nothing: "shot.-002", but not "shot-2".
+/// Where the number that ends at `end` of a name begins; at `end` where there is none. A minus sign belongs to it
+/// behind a point, an underscore or nothing: "shot.-002", but not "shot-2".
 std::size_t number_begin(std::string_view name, std::size_t end);
 
 struct FrameFile {
   int frame = 0;
   std::filesystem::path file;
 };
+/// Files with a number in the pattern's place that are none of its frames: they have other digits, too large a number,
+/// or that of a frame that is there.
+struct LeftOut {
+  std::size_t files = 0;
+  std::filesystem::path first;  ///< by name
+  void add(const std::filesystem::path& file);
+};
+
 /// The files of the pattern that exist, by number; with `frames` exactly those (missing ones are listed too: reading
 /// reports them). A plain file is one frame, 1 unless its name ends in a number. Errors: io (no file matches).
-Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames);
+Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames,
+                                           LeftOut* left_out = nullptr);
 
 /// The pattern of the one sequence of pictures in a folder: "shots/shot.####.exr". Errors: io (none, several: named).
 Result<std::string> sequence_in(const std::filesystem::path& folder);

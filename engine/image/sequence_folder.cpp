@@ -18,20 +18,28 @@ constexpr std::size_t kMostFrameDigits = 9;
 
 /// Files that differ in a number alone.
 struct Numbered {
-  std::size_t digits = kMostFrameDigits, files = 0;
+  std::size_t digits = kMostFrameDigits + 1, files = 0;
   fs::path example;
 };
 /// By what stands before and behind the number.
 using NumberedGroups = std::map<std::pair<std::string, std::string>, Numbered>;
 
-/// Notes a file by the last number in its name, the extension left out.
-void note_name(NumberedGroups& groups, const fs::path& file) {
+bool is_picture(const fs::path& file) {
+  return !picture_format(file).empty() || lower(file.extension().string()) == ".exr";
+}
+
+/// Notes a file by the last number in its name, the extension left out; in `long_ones` where that has too many digits.
+void note_name(NumberedGroups& groups, const fs::path& file, LeftOut& long_ones) {
   const std::string name = file.filename().string(), stem = file.stem().string();
   if (name.starts_with('.') || name.find('#') != std::string::npos) return;
   std::size_t end = stem.size();
   while (end > 0 && !is_digit(stem[end - 1])) --end;
   const std::size_t begin = number_begin(stem, end);
-  if (begin == end || end - begin > kMostFrameDigits) return;
+  if (begin == end) return;
+  if (end - begin - (stem[begin] == '-' ? 1 : 0) > kMostFrameDigits) {
+    if (is_picture(file)) long_ones.add(file);
+    return;
+  }
   Numbered& group = groups[{name.substr(0, begin), name.substr(end)}];
   group.digits = std::min(group.digits, end - begin);
   ++group.files;
@@ -49,47 +57,61 @@ std::string pattern_of(const fs::path& folder, const std::pair<std::string, std:
   return with_percents((folder / name.first).string()) + std::string(digits, '#') + with_percents(name.second);
 }
 
-bool is_picture(const fs::path& file) {
-  return !picture_format(file).empty() || lower(file.extension().string()) == ".exr";
+bool is_there(const fs::path& file) {
+  std::error_code none;
+  return fs::is_regular_file(file, none);
+}
+
+/// Whether the pattern's name of the frame is this one, and a frame beside it is there. `over_zero`: so is frame 0.
+bool is_around(const Pattern& pattern, int frame, const fs::path& file, bool over_zero) {
+  const auto named = [&](const fs::path& name) { return name.filename() == file.filename(); };
+  if (!named(pattern.file(frame)) && !named(pattern.file_with_sign(frame))) return false;
+  if (over_zero && !is_there(pattern.file(0))) return false;
+  return is_there(pattern.existing(frame - 1)) || is_there(pattern.existing(frame + 1));
 }
 
 }  // namespace
 
 Result<std::string> sequence_in(const fs::path& folder) {
   NumberedGroups groups;
+  LeftOut long_ones;
   std::error_code ec, ignored;
   fs::directory_iterator it(folder, ec);
   for (const fs::directory_iterator end; !ec && it != end; it.increment(ec))
-    if (it->is_regular_file(ignored)) note_name(groups, it->path());
+    if (it->is_regular_file(ignored)) note_name(groups, it->path(), long_ones);
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
   std::vector<std::string> found;
   for (const auto& [name, group] : groups)
-    if (is_picture(group.example)) found.push_back(pattern_of(folder, name, group.digits));
+    if (is_picture(group.example)) found.push_back(pattern_of(folder, name, std::min(group.digits, kMostFrameDigits)));
   if (found.size() == 1) return found.front();
   constexpr std::size_t kMostNamed = 4;
   Error error{ErrorKind::io,
               found.empty() ? "the folder holds no numbered pictures" : "the folder holds several sequences",
               folder.string()};
+  if (found.empty() && long_ones.files > 0)
+    error.message += fmt::format(": {} has more than {} digits", long_ones.first.filename().string(), kMostFrameDigits);
   if (found.size() > kMostNamed) found.resize(kMostNamed), found.emplace_back("…");
   error.allowed = found.empty() ? "a folder with files like shot.0001.exr" : join(found);
   return error;
 }
 
 std::optional<SequenceFrame> sequence_around(const fs::path& file) {
-  std::error_code none;
   NumberedGroups own;
-  note_name(own, file);
-  if (own.empty() || !is_picture(file) || !fs::is_regular_file(file, none)) return std::nullopt;
+  LeftOut ignored;
+  note_name(own, file, ignored);
+  if (own.empty() || !is_picture(file) || !is_there(file)) return std::nullopt;
   const auto& [name, group] = *own.begin();
   const std::string written = file.filename().string().substr(name.first.size(), group.digits);
   const int frame = std::stoi(written);
-  // A number that begins with 0 tells how many digits all have; others may come from 9 or from 99.
-  for (std::size_t digits = written.size(); digits >= 1; --digits) {
-    const std::string text = pattern_of(file.parent_path(), name, digits);
-    const auto pattern = parse_pattern(text);
-    if (!pattern || pattern->file(frame).filename() != file.filename()) continue;
-    const bool follows = frame > 0 && fs::is_regular_file(pattern->file(frame - 1), none);
-    if (follows || fs::is_regular_file(pattern->file(frame + 1), none)) return SequenceFrame{text, frame};
+  // A number that begins with 0 tells how many digits all have; others may come from 9 or from 99. Before zero the sign
+  // may count among them or not, which frame 0 tells.
+  for (const bool over_zero : {true, false}) {
+    if (over_zero && frame >= 0) continue;
+    for (std::size_t digits = std::min(written.size(), kMostFrameDigits); digits >= 1; --digits) {
+      const std::string text = pattern_of(file.parent_path(), name, digits);
+      if (const auto pattern = parse_pattern(text); pattern && is_around(*pattern, frame, file, over_zero))
+        return SequenceFrame{text, frame};
+    }
   }
   return std::nullopt;
 }

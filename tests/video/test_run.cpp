@@ -165,6 +165,32 @@ TEST_F(RunVideos, SinglePicturesComeThroughPipes) {
   EXPECT_EQ(number_in("m.png"), 4);
 }
 
+/// What a folder holds beside the sequence is told.
+TEST_F(RunVideos, FilesThatAreLeftOutAreTold) {
+  clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 6);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mkv -o f.####.pfm && mkdir in && mv f.0001.pfm in/f.-0003.pfm && mv "
+                  "f.0002.pfm in/f.-0002.pfm && mv f.0003.pfm in/f.-0001.pfm && mv f.0004.pfm in/f.0000.pfm && mv "
+                  "f.0005.pfm in/f.0001.pfm && mv f.0006.pfm in/f.0002.pfm"),
+            0)
+      << said_;
+  ASSERT_EQ(shell("AFTERGLOW run look.lua in/ -o out/ --format png"), 0) << said_;
+  EXPECT_EQ(said_, "");
+  for (const char* name : {"out/f.-0003.png", "out/f.-0001.png", "out/f.0002.png"})
+    EXPECT_TRUE(std::filesystem::exists(path(name))) << name;
+  ASSERT_EQ(shell("AFTERGLOW run look.lua 'in/f.####.pfm' -o v.mkv --codec ffv1"), 0) << said_;
+  const auto movie = open(path("v.mkv"));
+  ASSERT_TRUE(movie);
+  ASSERT_EQ(movie->frames(), 6);
+  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(number_of(read(movie, frame).value()), frame + 1);
+  ASSERT_EQ(
+      shell("cp in/f.0001.pfm in/f.20261122001.pfm && cp in/f.0001.pfm in/f.00005.pfm && AFTERGLOW run look.lua in/ "
+            "-o out/ --format png"),
+      0)
+      << said_;
+  EXPECT_THAT(said_, HasSubstr("warning: in/f.####.pfm: f.00005.pfm and 1 more are left out: numbers have 4 digits, "
+                               "or more without zeros in front here, and go to 2147483647"));
+}
+
 /// A frame of another size is one that fails: its place stays empty.
 TEST_F(RunVideos, AFrameOfAnotherSizeLeavesItsPlaceEmpty) {
   clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 9);

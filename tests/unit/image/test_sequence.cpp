@@ -101,6 +101,52 @@ TEST(Pattern, FramesBeforeZeroAreOfTheSequence) {
   EXPECT_EQ(sequence_around(folder / "n.-001.exr").value().frame, -1);
 }
 
+TEST(Pattern, FramesBeforeZeroAsBlenderWritesThem) {
+  const TemporaryFolder folder;
+  for (const char* name : {"n.-0002.exr", "n.-0001.exr", "n.0000.exr", "n.0001.exr"})
+    std::ofstream(folder / name) << "x";
+  EXPECT_EQ(sequence_in(folder.path()).value(), folder / "n.####.exr");
+  const Pattern pattern = parse_pattern((folder / "n.####.exr").string()).value();
+  LeftOut others;
+  const auto found = find_frames(pattern, std::nullopt, &others).value();
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found[0].frame, -2);
+  EXPECT_EQ(found[0].file, folder / "n.-0002.exr");
+  EXPECT_EQ(others.files, 0u);
+  EXPECT_EQ(find_frames(pattern, std::vector<int>{-1}).value()[0].file, folder / "n.-0001.exr");
+  EXPECT_EQ(find_frames(pattern, std::vector<int>{-7}).value()[0].file, folder / "n.-007.exr");
+  for (const int frame : {-2, -1}) {
+    const auto around = sequence_around(pattern.file_with_sign(frame));
+    ASSERT_TRUE(around);
+    EXPECT_EQ(around->frame, frame);
+    EXPECT_EQ(around->pattern, folder / "n.####.exr");
+  }
+  // Both spellings of one number: C's is the frame.
+  std::ofstream(folder / "n.-002.exr") << "x";
+  const auto twins = find_frames(pattern, std::nullopt, &others).value();
+  ASSERT_EQ(twins.size(), 4u);
+  EXPECT_EQ(twins[0].file, folder / "n.-002.exr");
+  EXPECT_EQ(others.first, folder / "n.-0002.exr");
+}
+
+TEST(Pattern, FilesThatAreLeftOutAreNamed) {
+  const TemporaryFolder folder;
+  for (const char* name : {"f.1.exr", "f.2.exr", "f.10.exr", "f.0003.exr", "f.2147483648.exr", "f.20261122001.exr",
+                           "f.1a.exr", "f.exr", "g.7.exr"})
+    std::ofstream(folder / name) << "x";
+  LeftOut others;
+  const auto found = find_frames(parse_pattern((folder / "f.#.exr").string()).value(), std::nullopt, &others).value();
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_EQ(others.files, 3u);
+  EXPECT_EQ(others.first, folder / "f.0003.exr");
+  const auto none = find_frames(parse_pattern((folder / "g.##.exr").string()).value(), std::nullopt);
+  EXPECT_THAT(none.error().message, HasSubstr("no file matches this pattern: of g.7.exr the digits are others"));
+  std::filesystem::create_directory(folder / "dates");
+  std::ofstream(folder / "dates/d.20261122001.exr") << "x";
+  EXPECT_THAT(sequence_in(folder / "dates").error().message,
+              HasSubstr("no numbered pictures: d.20261122001.exr has more than 9 digits"));
+}
+
 TEST(Pattern, AFrameHasItsSequenceAroundIt) {
   const TemporaryFolder folder;
   for (const char* name :
