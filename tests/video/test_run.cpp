@@ -165,6 +165,19 @@ TEST_F(RunVideos, SinglePicturesComeThroughPipes) {
   EXPECT_EQ(number_in("m.png"), 4);
 }
 
+TEST_F(RunVideos, WhatComesOnStandardInputIsCalledThat) {
+  const std::string file = clip("whole.mp4", std::string(kCodec) + " -movflags +faststart", 24);
+  const std::string bytes = read_file(file).value();
+  std::ofstream(path("cut.mp4"), std::ios::binary) << bytes.substr(0, bytes.size() * 8 / 10);
+  EXPECT_EQ(shell("cat cut.mp4 | AFTERGLOW run look.lua - -o cut.####.pfm --report report"), 4);
+  EXPECT_THAT(said_, HasSubstr("-: is truncated: "));
+  EXPECT_THAT(said_, HasSubstr("-: error: frame 24 is missing"));
+  EXPECT_THAT(said_ + read_file(path("report")).value(), testing::Not(HasSubstr("/proc/self")));
+  EXPECT_EQ(shell("head -c 300 whole.mp4 | AFTERGLOW run look.lua - -o cut.####.pfm"), 4);
+  EXPECT_THAT(said_, HasSubstr("-: error: "));
+  EXPECT_THAT(said_, testing::Not(HasSubstr("/proc/self")));
+}
+
 /// What a folder holds beside the sequence is told.
 TEST_F(RunVideos, FilesThatAreLeftOutAreTold) {
   clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 6);
