@@ -105,9 +105,36 @@ class VideoSink : public FrameSink {
           "hdr metadata", fmt::format("{}: what the input says of its display and its brightest light (HDR10) is not "
                                       "kept: it was of other pictures",
                                       file_.string()));
+    if (plan.container == "gif") AFTERGLOW_CHECK(check_hundredths(job, plan));
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
     opened_ = writer_.get();
+    return {};
+  }
+
+  /// GIF's clock. Errors: usage (frames come faster than it ticks).
+  Result<void> check_hundredths(const FrameJob& job, const VideoPlan& plan) const {
+    constexpr long long kNone = 100;
+    const auto tick = [](long long pts, const Rational& base) {
+      return std::llround(100.0 * static_cast<double>(pts) * base.numerator / base.denominator);
+    };
+    long long shortest = kNone;
+    if (job.movie && !job.passing) {
+      const auto& pts = job.movie->facts().pts;
+      for (std::size_t i = 1; i < pts.size(); ++i)
+        shortest = std::min(shortest, tick(pts[i], plan.time_base) - tick(pts[i - 1], plan.time_base));
+    } else {
+      const double rate = static_cast<double>(plan.rate.numerator) / plan.rate.denominator;
+      shortest = rate > 100 ? 0 : rate > 50 ? 1 : kNone;
+    }
+    if (shortest < 1)
+      return Error{ErrorKind::usage, "GIF tells the times of frames in hundredths of a second; these come faster",
+                   file_.string(), 0, "up to 100 frames a second (players show up to 50); apng and webm take more"};
+    if (shortest < 2)
+      diagnostics_.warn_once(
+          "gif clock", fmt::format("{}: GIF holds hundredths of a second, and players show delays below 2 as 10: more "
+                                   "than 50 frames a second play too slowly",
+                                   file_.string()));
     return {};
   }
 

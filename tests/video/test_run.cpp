@@ -178,6 +178,24 @@ TEST_F(RunVideos, WhatComesOnStandardInputIsCalledThat) {
   EXPECT_THAT(said_, testing::Not(HasSubstr("/proc/self")));
 }
 
+TEST_F(RunVideos, GifHoldsHundredthsOfASecond) {
+  clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 5);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mkv -o f.####.pfm"), 0) << said_;
+  ASSERT_EQ(shell("AFTERGLOW run look.lua f.####.pfm -o a.gif --fps 50"), 0) << said_;
+  EXPECT_EQ(said_, "");
+  ASSERT_EQ(shell("AFTERGLOW run look.lua f.####.pfm -o b.gif --fps 60"), 0) << said_;
+  EXPECT_THAT(said_,
+              HasSubstr("warning: b.gif: GIF holds hundredths of a second, and players show delays below 2 as 10"));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua f.####.pfm -o c.gif --fps 120"), 2);
+  EXPECT_THAT(said_, HasSubstr("c.gif: error: GIF tells the times of frames in hundredths of a second"));
+  EXPECT_THAT(said_, HasSubstr("allowed: up to 100 frames a second"));
+  ffmpeg(fmt::format("-r 60 -i '{}' -c:v ffv1 '{}'", path("f.%04d.pfm"), path("sixty.mkv")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua sixty.mkv -o d.gif"), 0) << said_;
+  EXPECT_THAT(said_, HasSubstr("players show delays below 2 as 10"));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mkv -o e.gif"), 0) << said_;
+  EXPECT_EQ(said_, "");
+}
+
 /// What a folder holds beside the sequence is told.
 TEST_F(RunVideos, FilesThatAreLeftOutAreTold) {
   clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 6);
