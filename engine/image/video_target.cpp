@@ -4,6 +4,8 @@
 #include <system_error>
 #include <utility>
 
+#include "image/lost_file.h"
+
 namespace afterglow {
 namespace fs = std::filesystem;
 
@@ -25,8 +27,7 @@ Error VideoTarget::named(Error error) const {
 Result<void> VideoTarget::commit() {
   if (auto closed = out_->close(); !closed) return named(std::move(closed).error());
   std::error_code ec;
-  if (fs::file_size(temporary(), ec) != out_->size() || ec)
-    return Error{ErrorKind::io, "cannot be written: the file has lost bytes", file_.string()};
+  if (fs::file_size(temporary(), ec) != out_->size() || ec) return named(lost_file(temporary()));
   return temporary_->commit();
 }
 

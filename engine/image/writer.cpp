@@ -17,6 +17,7 @@
 #include "core/text.h"
 #include "image/encode.h"
 #include "image/exr_file.h"
+#include "image/lost_file.h"
 #include "image/oiio_module.h"
 #include "image/output_file.h"
 #include "image/output_format.h"
@@ -68,8 +69,7 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
   AFTERGLOW_CHECK(out.close());
   AFTERGLOW_CHECK(written);
   std::error_code ec;
-  if (fs::file_size(temporary, ec) != out.size() || ec)
-    return Error{ErrorKind::io, "cannot be written: the file has lost bytes"};
+  if (fs::file_size(temporary, ec) != out.size() || ec) return lost_file(temporary);
   return {};
 }
 

@@ -8,6 +8,7 @@
 #include <csignal>
 
 #include "image/output_file.h"
+#include "image/video_target.h"
 #include "image/writer.h"
 #include "make_files.h"
 #include "temporary_folder.h"
@@ -48,6 +49,20 @@ class FileSizeCap {
   rlimit before_{};
   void (*previous_)(int) = nullptr;
 };
+
+TEST(Lost, AFolderThatIsMovedAwayIsNamed) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "out");
+  auto target = VideoTarget::open(folder / "out/a.mkv").value();
+  ASSERT_TRUE(target->out().write("bytes", 5));
+  std::filesystem::rename(folder / "out", folder / "moved");
+  const auto done = target->commit();
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().kind, ErrorKind::io);
+  EXPECT_EQ(done.error().file, folder / "out/a.mkv");
+  EXPECT_THAT(done.error().message,
+              HasSubstr("cannot be written: its folder " + (folder / "out").string() + " is gone"));
+}
 
 class FullDisk : public testing::TestWithParam<const char*> {};
 
