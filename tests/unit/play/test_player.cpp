@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "player_test.h"
@@ -11,6 +12,22 @@ namespace afterglow {
 namespace {
 
 using ::testing::HasSubstr;
+
+TEST(Percentiles, AreThoseOfTheSortedRow) {
+  std::vector<double> row;
+  for (int count = 1; count <= 250; ++count) {
+    row.push_back((count * 7919) % 101);
+    const Percentiles found = Percentiles::of(row);
+    std::vector<double> sorted = row;
+    std::ranges::sort(sorted);
+    const auto at = [&](int percent) { return sorted[static_cast<std::size_t>((count * percent + 99) / 100 - 1)]; };
+    EXPECT_EQ(found.median, at(50)) << count;
+    EXPECT_EQ(found.p95, at(95)) << count;
+    EXPECT_EQ(found.p99, at(99)) << count;
+    EXPECT_EQ(found.most, sorted.back()) << count;
+  }
+  EXPECT_EQ(Percentiles::of({}).count, 0u);
+}
 
 TEST_F(PlayerTest, PlaysByTheClockAndRunsEachFrame) {
   write_sequence(3);
