@@ -30,12 +30,14 @@ std::optional<std::uint64_t> memory_of_machine(const fs::path& root) {
 }
 
 /// The least that a group and those above it say. In a container the groups above are out of sight, and the first that
-/// is seen is its own.
-void hold_to_groups(const fs::path& tree, const fs::path& group, const char* file, MemoryLimit& limit) {
-  for (fs::path at = group.relative_path();; at = at.parent_path()) {
-    if (const auto bytes = number_in(tree / at / file); bytes && *bytes < limit.bytes)
-      limit = {*bytes, fmt::format("what the control group /{} may take", at.generic_string())};
-    if (at.empty()) return;
+/// is seen is its own. `group`: "/user.slice/one". (Texts: libstdc++ 12 frees parts of a path twice where there is no
+/// memory for its parent.)
+void hold_to_groups(const std::string& tree, std::string group, const std::string& file, MemoryLimit& limit) {
+  while (group.ends_with('/')) group.pop_back();
+  for (;; group.resize(std::min(group.rfind('/'), group.size() - 1))) {
+    if (const auto bytes = number_in(tree + group + "/" + file); bytes && *bytes < limit.bytes)
+      limit = {*bytes, fmt::format("what the control group {} may take", group.empty() ? "/" : group)};
+    if (group.empty()) return;
   }
 }
 
@@ -45,16 +47,16 @@ MemoryLimit usual_memory_limit(const fs::path& root) {
   MemoryLimit limit;
   if (const auto bytes = memory_of_machine(root); bytes && *bytes < limit.bytes)
     limit = {*bytes, "what this machine has"};
-  const fs::path groups = root / "sys/fs/cgroup";
+  const std::string groups = (root / "sys/fs/cgroup").string();
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {  // "0::/group", "4:memory:/group"
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (first == std::string::npos || second == std::string::npos) continue;
     const auto controllers = split(line.substr(first + 1, second - first - 1), ',');
-    const fs::path group = line.substr(second + 1);
+    const std::string group = line.substr(second + 1);
     if (line.starts_with("0::")) hold_to_groups(groups, group, "memory.max", limit);
     if (std::ranges::find(controllers, "memory") != controllers.end())
-      hold_to_groups(groups / "memory", group, "memory.limit_in_bytes", limit);
+      hold_to_groups(groups + "/memory", group, "memory.limit_in_bytes", limit);
   }
   return limit;
 }
