@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <map>
 #include <set>
 #include <system_error>
@@ -226,19 +225,6 @@ std::string missing_text(const std::vector<FrameFile>& files) {
   return join(gaps);
 }
 
-/// Files that look like frames of the sequence.
-void tell_left_out(const std::string& input, const Pattern& pattern, const LeftOut& others, Diagnostics& diagnostics) {
-  if (others.files == 0) return;
-  const std::string first = others.first.filename().string();
-  const std::string names =
-      others.files == 1 ? first + " is" : fmt::format("{} and {} more are", first, others.files - 1);
-  const std::string digits = pattern.digits == 1
-                                 ? "no zeros in front"
-                                 : fmt::format("{} digits, or more without zeros in front", pattern.digits);
-  diagnostics.warn(fmt::format("{}: {} left out: numbers have {} here, and go to {}", input, names, digits,
-                               std::numeric_limits<int>::max()));
-}
-
 /// Of a sequence that is taken whole. `held`: its frames keep their times. Errors: usage (a video without an end).
 Result<void> tell_gaps(const std::string& input, const std::vector<FrameFile>& files, bool held,
                        Diagnostics& diagnostics) {
@@ -267,7 +253,7 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
   LeftOut others;
   AFTERGLOW_TRY(const auto files, find_frames(pattern, frames, &others));
-  tell_left_out(input, pattern, others, diagnostics);
+  others.tell(input, pattern, diagnostics);
   const bool held = names.takes_all() && request.inputs.size() == 1;
   if (pattern.numbered && !frames) AFTERGLOW_CHECK(tell_gaps(input, files, held, diagnostics));
   for (const auto& [frame, file] : files) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/diagnostics.h"
 #include "core/result.h"
 
 namespace afterglow {
@@ -43,6 +44,8 @@ struct LeftOut {
   std::size_t files = 0;
   std::filesystem::path first;  ///< by name
   void add(const std::filesystem::path& file);
+  /// A warning, where there are any. `input`: as the user wrote the pattern.
+  void tell(const std::string& input, const Pattern& pattern, Diagnostics& diagnostics) const;
 };
 
 /// The files of the pattern that exist, by number; with `frames` exactly those (missing ones are listed too: reading

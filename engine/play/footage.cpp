@@ -65,9 +65,12 @@ std::string frames_text(const std::vector<int>& frames) {
   return out;
 }
 
-Result<void> Footage::add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted) {
+Result<void> Footage::add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted,
+                                   Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
-  AFTERGLOW_TRY(auto files, find_frames(pattern, wanted));
+  LeftOut others;
+  AFTERGLOW_TRY(auto files, find_frames(pattern, wanted, &others));
+  others.tell(input, pattern, diagnostics);
   // A plain file that is missing is an error when it is read; a hole in a sequence is none.
   if (pattern.numbered) std::erase_if(files, [&](const FrameFile& file) { return !there_(file.file); });
   std::unordered_map<int, int> picture_of;
@@ -140,7 +143,7 @@ Result<void> Footage::add_movie(const fs::path& file, const std::optional<std::v
 Result<void> Footage::add(const std::string& input, const std::optional<std::vector<int>>& wanted,
                           Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
-  if (pattern.numbered) return add_sequence(input, wanted);
+  if (pattern.numbered) return add_sequence(input, wanted, diagnostics);
   if (!movie_format(pattern.file(0)).empty()) return add_movie(pattern.file(0), wanted, diagnostics);
   if (wanted)
     return Error{ErrorKind::usage,
@@ -148,7 +151,7 @@ Result<void> Footage::add(const std::string& input, const std::optional<std::vec
                  "afterglow play"};
   std::error_code none;
   if (!fs::exists(pattern.file(0), none)) return missing_file(pattern.file(0));
-  return add_sequence(input, {});
+  return add_sequence(input, {}, diagnostics);
 }
 
 Result<int> parse_proxy(const std::string& text) {

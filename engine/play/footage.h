@@ -115,7 +115,8 @@ class Footage : public std::enable_shared_from_this<Footage> {
   Footage() = default;
   Result<void> add_inputs(const FootageOptions& options, Diagnostics& diagnostics);
   void renumber(const Footage& before, const std::set<std::filesystem::path>& changed);
-  Result<void> add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted);
+  Result<void> add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted,
+                            Diagnostics& diagnostics);
   Result<void> add_movie(const std::filesystem::path& file, const std::optional<std::vector<int>>& wanted,
                          Diagnostics& diagnostics);
   double pace(const Movie& movie, std::vector<int>& turns) const;

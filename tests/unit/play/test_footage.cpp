@@ -64,6 +64,12 @@ TEST_F(FootageTest, MissingFramesHoldTheOneBeforeAndAreReported) {
   EXPECT_THAT(messages_, ElementsAre(HasSubstr("2 frames are missing, the picture before is held: 5-6")));
 }
 
+TEST_F(FootageTest, FilesThatAreLeftOutAreTold) {
+  for (const char* name : {"s.1.exr", "s.2.exr", "s.0003.exr"}) write(name, 1);
+  EXPECT_EQ(open({path("s.#.exr")}).value()->frames(), 2);
+  EXPECT_THAT(messages_, ElementsAre(HasSubstr("s.0003.exr is left out")));
+}
+
 TEST_F(FootageTest, AListIsTakenInItsOrderAndItsStartMayBeMissing) {
   for (const int number : {2, 3}) write("a" + std::to_string(number) + ".exr", static_cast<float>(number));
   const auto footage = open({path("a%d.exr")}, "1-4").value();
