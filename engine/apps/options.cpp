@@ -88,11 +88,10 @@ void LayerArguments::add(CLI::App& command) {
       .add_option("--layer", layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
       ->type_name("NAME")
       ->group(group);
-  std::vector<std::string> spaces;
-  for (const InputSpace& space : input_spaces()) spaces.emplace_back(space.name);
   command
-      .add_option("--input-space", input_space,
-                  "Colour space that pictures are stored in, whatever they and the look say: " + join(spaces))
+      .add_option(
+          "--input-space", input_space,
+          "Colour space that pictures are stored in, whatever they and the look say: " + join(input_space_names()))
       ->type_name("SPACE")
       ->group(group);
   command.add_option("--depth", depth, "Depth from another file or channel; FILE may be a pattern")

@@ -19,18 +19,12 @@ std::vector<std::string> effects() {
   return names;
 }
 
-std::vector<std::string> spaces() {
-  std::vector<std::string> names;
-  for (const InputSpace& space : input_spaces()) names.emplace_back(space.name);
-  return names;
-}
-
 }  // namespace
 
 std::vector<std::string> usual_words(const std::string& kind) {
   if (kind == "PRESET") return search_path_for({}, {}).preset_names();
   if (kind == "EFFECT") return effects();
-  if (kind == "SPACE") return spaces();
+  if (kind == "SPACE") return input_space_names();
   if (kind == "CODEC") return video_codecs();
   if (kind == "COMPRESSION") return compression_names();
   return {};

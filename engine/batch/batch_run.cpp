@@ -215,46 +215,6 @@ Result<void> run_frames(BatchRun& run) {
   return done;
 }
 
-/// What came on standard input lies in memory, under a name that nobody gave.
-std::string with_given_names(std::string text) {
-  constexpr std::string_view kInMemory = "/proc/self/fd/";
-  for (std::size_t at = 0; (at = text.find(kInMemory, at)) != std::string::npos; ++at) {
-    const std::size_t end = std::min(text.find_first_not_of("0123456789", at + kInMemory.size()), text.size());
-    text.replace(at, end - at, "-");
-  }
-  return text;
-}
-
-Error with_given_names(Error error) {
-  error.file = with_given_names(std::move(error.file));
-  error.message = with_given_names(std::move(error.message));
-  return error;
-}
-
-Result<void> run_named(const BatchRequest& asked, const RunEvents& events, RunReport& report);
-
-/// `run_named`, whose messages call that input "-".
-Result<void> run_standard_input(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
-  Diagnostics diagnostics([&](Severity severity, const std::string& text) {
-    const std::string named = with_given_names(text);
-    if (severity == Severity::warning) events.diagnostics.warn(named);
-    if (severity == Severity::printed) events.diagnostics.print(named);
-    if (severity == Severity::note) events.diagnostics.note(named);
-  });
-  RunEvents own{.diagnostics = diagnostics,
-                .progress = events.progress,
-                .end_progress = events.end_progress,
-                .failed = [&](const Error& error) { events.failed(with_given_names(error)); },
-                .note = events.note,
-                .interrupted = events.interrupted};
-  auto done = run_named(asked, own, report);
-  for (FrameRecord& frame : report.frames) {
-    frame.job.input = with_given_names(frame.job.input.string());
-    if (frame.error) frame.error = with_given_names(*frame.error);
-  }
-  return done ? std::move(done) : with_given_names(done.error());
-}
-
 }  // namespace
 
 void FilesOfFrames::add(const FrameJob& frame) {
@@ -288,11 +248,6 @@ bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {
   return true;
 }
 
-Result<void> run_batch(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
-  const bool standard = std::ranges::find(asked.files.inputs, "-") != asked.files.inputs.end();
-  return standard ? run_standard_input(asked, events, report) : run_named(asked, events, report);
-}
-
 namespace {
 
 Result<void> run_named(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
@@ -322,6 +277,49 @@ Result<void> run_named(const BatchRequest& asked, const RunEvents& events, RunRe
   return done;
 }
 
+/// What came on standard input lies in memory, under a name that nobody gave.
+std::string with_given_names(std::string text) {
+  constexpr std::string_view kInMemory = "/proc/self/fd/";
+  for (std::size_t at = 0; (at = text.find(kInMemory, at)) != std::string::npos; ++at) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", at + kInMemory.size()), text.size());
+    text.replace(at, end - at, "-");
+  }
+  return text;
+}
+
+Error with_given_names(Error error) {
+  error.file = with_given_names(std::move(error.file));
+  error.message = with_given_names(std::move(error.message));
+  return error;
+}
+
+/// `run_named`, whose messages call that input "-".
+Result<void> run_standard_input(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
+  Diagnostics diagnostics([&](Severity severity, const std::string& text) {
+    const std::string named = with_given_names(text);
+    if (severity == Severity::warning) events.diagnostics.warn(named);
+    if (severity == Severity::printed) events.diagnostics.print(named);
+    if (severity == Severity::note) events.diagnostics.note(named);
+  });
+  RunEvents own{.diagnostics = diagnostics,
+                .progress = events.progress,
+                .end_progress = events.end_progress,
+                .failed = [&](const Error& error) { events.failed(with_given_names(error)); },
+                .note = events.note,
+                .interrupted = events.interrupted};
+  auto done = run_named(asked, own, report);
+  for (FrameRecord& frame : report.frames) {
+    frame.job.input = with_given_names(frame.job.input.string());
+    if (frame.error) frame.error = with_given_names(*frame.error);
+  }
+  return done ? std::move(done) : with_given_names(done.error());
+}
+
 }  // namespace
+
+Result<void> run_batch(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
+  const bool standard = std::ranges::find(asked.files.inputs, "-") != asked.files.inputs.end();
+  return standard ? run_standard_input(asked, events, report) : run_named(asked, events, report);
+}
 
 }  // namespace afterglow

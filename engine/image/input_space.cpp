@@ -103,12 +103,16 @@ constexpr std::array kSpaces{
 
 std::span<const InputSpace> input_spaces() { return kSpaces; }
 
-Result<const InputSpace*> find_input_space(const std::string& name) {
+std::vector<std::string> input_space_names() {
   std::vector<std::string> names;
-  for (const InputSpace& space : kSpaces) {
+  for (const InputSpace& space : kSpaces) names.emplace_back(space.name);
+  return names;
+}
+
+Result<const InputSpace*> find_input_space(const std::string& name) {
+  for (const InputSpace& space : kSpaces)
     if (name == space.name) return &space;
-    names.emplace_back(space.name);
-  }
+  const std::vector<std::string> names = input_space_names();
   return Error{ErrorKind::usage, "'" + name + "' is no input space", "", 0, join(names), nearest_name(name, names)};
 }
 

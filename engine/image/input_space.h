@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "image/color_encoding.h"
@@ -21,6 +22,7 @@ struct InputSpace {
 
 /// All of them, by name. docs/math.md §24 has curves and sources.
 std::span<const InputSpace> input_spaces();
+std::vector<std::string> input_space_names();
 /// Errors (usage): unknown, with those that there are.
 Result<const InputSpace*> find_input_space(const std::string& name);
 

@@ -52,12 +52,7 @@ void Player::State::begin_reading() {
   ahead = std::make_unique<ReadAhead>(
       [this](int key) {
         const auto read_from = readable();
-        FootageNeeds wanted;
-        {
-          const std::lock_guard lock(mutex);
-          wanted = needs;
-        }
-        auto read = read_from->read(key, wanted, diagnostics);
+        auto read = read_from->read(key, needs_now(), diagnostics);
         const std::lock_guard lock(mutex);
         if (read) {
           unreadable.erase(key);

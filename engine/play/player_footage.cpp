@@ -5,6 +5,11 @@
 
 namespace afterglow {
 
+FootageNeeds Player::State::needs_now() {
+  const std::lock_guard lock(mutex);
+  return needs;
+}
+
 std::shared_ptr<const Footage> Player::State::readable() {
   const std::lock_guard lock(mutex);
   return read_footage;

@@ -132,12 +132,7 @@ Result<std::optional<RegionMeans>> Player::means(Rect region) {
 
 /// Runs the whole picture once, where a proxy is shown; the next turn shows the proxy again.
 Result<Picture> Player::State::whole_frame() {
-  FootageNeeds wanted;
-  {
-    const std::lock_guard lock(mutex);
-    wanted = needs;
-  }
-  AFTERGLOW_TRY(Picture whole, footage->read_whole(footage->frame(shown.position).picture, wanted, diagnostics));
+  AFTERGLOW_TRY(Picture whole, footage->read_whole(footage->frame(shown.position).picture, needs_now(), diagnostics));
   BuildContext frame = context(shown.position, 1);
   if (whole.facts) frame.position = camera_position(whole.facts->metadata);
   first->build_aside(false);

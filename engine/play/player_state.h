@@ -69,6 +69,7 @@ struct Player::State {
   void take_footage();
   Result<void> open_row(FootageOptions wanted);
   std::shared_ptr<const Footage> readable();
+  FootageNeeds needs_now();
   void want_pictures();
   void take_builds();
   void tell_errors();
