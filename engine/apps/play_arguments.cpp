@@ -38,7 +38,7 @@ void PlayArguments::add_input(CLI::App& app) {
       ->type_name("SIZE")
       ->group(group);
   app.add_option("--cache", cache, "Memory for pictures read ahead (default 2G)")->type_name("SIZE")->group(group);
-  app.add_option("--readers", readers, "Threads that read ahead (default 2)")
+  app.add_option("--readers", readers, "Threads that read ahead (default: half of the processors, 2 to 8)")
       ->check(CLI::Range(1, 64))
       ->type_name("N")
       ->group(group);

@@ -2,9 +2,11 @@
 // The options of `afterglow play`, declared and understood.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/display_arguments.h"
@@ -25,7 +27,7 @@ struct PlayArguments {
   std::string other, show, loop, cache = "2G", proxy = "1", screenshot, report, exports;
   std::optional<double> fps;
   double speed = 1, volume = 100;
-  int readers = 2;
+  int readers = static_cast<int>(std::clamp(std::thread::hardware_concurrency() / 2, 2u, 8u));
   std::uint64_t count = 0;
   bool full_screen = false, paused = false, mute = false;
   std::optional<double> ui_scale;

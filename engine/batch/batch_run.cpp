@@ -21,7 +21,7 @@
 namespace afterglow {
 namespace {
 
-constexpr int kFramesInFlight = 2;  // of a sequence: while one runs the next is packed and the last is unpacked
+constexpr int kFramesInFlight = 3;  // of a sequence: while one runs the next is packed and the last is unpacked
 
 /// What outlives a step.
 struct BatchRun {

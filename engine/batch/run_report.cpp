@@ -129,11 +129,13 @@ double processors_used(const RunReport& report) {
 std::string pace_text(const RunReport& report, std::size_t done) {
   const double used = processors_used(report), frame = report.frames_wall / static_cast<double>(done);
   const double read = mean_step(report, &FrameSteps::waited_read), write = mean_step(report, &FrameSteps::waited_write);
+  const double device = mean(report, [](const auto& f) { return f.times.waited; });
   constexpr double kBusy = 0.9, kMuch = 0.2;
   const char* limit = used >= kBusy                            ? "the processors are the limit"
                       : read >= kMuch * frame && read >= write ? "reading is the limit"
                       : write >= kMuch * frame                 ? "writing is the limit"
-                                                               : "the device is the limit";
+                      : device >= kMuch * frame                ? "the device is the limit"
+                                                               : "handing pixels to the device is the limit";
   return fmt::format(
       "pace: {:.2f} frames a second; {:.0f} % of {} processors used; each frame waited {:.1f} ms to be read, {:.1f} ms "
       "for others to "

@@ -20,6 +20,7 @@ struct KernelTime {
 };
 struct FrameTimes {
   double upload = 0, execute = 0, readback = 0;  ///< milliseconds, wall clock
+  double waited = 0;                             ///< of `execute`: in which the CPU had nothing else to do
   std::vector<KernelTime> kernels;               ///< empty unless asked for and known
   int kernels_run = 0, kernels_kept = 0;         ///< kept: what they made in an earlier run is still right
   bool separate_submissions = false;             ///< kernels were timed one submission each; not part of `execute`

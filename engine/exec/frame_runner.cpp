@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <future>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -59,13 +60,25 @@ struct FrameRunner::State {
   };
   std::optional<Begun> begun;
   Program* warming_up = nullptr;  ///< whose pixels `warm_up` submitted, which have not been waited for
-  Submitter submitter;            // last: it waits before the images go
+  Submitter submitter;            // it waits before the images go
+  /// A frame that began, whose pixels are being converted by another thread. It touches nothing but the images.
+  struct Packing {
+    Program* program = nullptr;
+    std::map<std::string, HostImage> host;
+    Choose choose;
+    std::future<Result<double>> uploaded{};  ///< how long it took; ends before the rest goes
+  };
+  std::optional<Packing> packing;  // last: its thread uses the others
 
   Result<void> leave_readable();
   Result<void> begin(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
                      const Choose& choose);
-  Result<void> start(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
-                     const Choose& choose);
+  Result<void> begin_packing(Program& program, const std::map<std::string, HostImage>& host, const Choose& choose);
+  void launch_packed();
+  Result<void> begin_download();
+  Result<void> prepare(Program& program, const std::map<std::string, HostImage>& host);
+  Result<double> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
+  Result<void> launch(Program& program, KernelTiming timing, const Choose& choose);
   Result<void> given_up(Result<void> failed);
   Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing);
   Result<void> time_separately(Program& program, const std::vector<bool>& run);
@@ -184,14 +197,16 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
 
 /// The one place that waits for kernels. Once a frame has failed it says so each time.
 Result<void> FrameRunner::State::wait() {
+  launch_packed();
   if (Program* const warmed = std::exchange(warming_up, nullptr)) {
     AFTERGLOW_CHECK(submitter.wait());
     warmed->forget_runaways();  // it read images that nobody had filled
   }
   if (!begun) return {};
   if (!begun->submitted) return begun->failed ? Result<void>(*begun->failed) : Result<void>();
-  const auto since = *std::exchange(begun->submitted, std::nullopt);
+  const auto since = *std::exchange(begun->submitted, std::nullopt), waiting = Clock::now();
   auto done = submitter.wait();
+  begun->times.waited += milliseconds_since(waiting);
   begun->times.execute += milliseconds_since(since);
   auto ended = done && begun->running ? begun->running->check_loops(begun->runaways) : Result<void>();
   if (done && ended) return {};
@@ -204,18 +219,29 @@ Result<void> FrameRunner::State::wait() {
   return ended;
 }
 
-/// Everything of a frame but waiting for it and reading it back.
-Result<void> FrameRunner::State::start(Program& program, const std::map<std::string, HostImage>& host,
-                                       KernelTiming timing, const Choose& choose) {
+/// A frame begins: its images are made.
+Result<void> FrameRunner::State::prepare(Program& program, const std::map<std::string, HostImage>& host) {
+  launch_packed();
+  begun = Begun{};
+  shown.reset();
   const auto warming = Clock::now();
   AFTERGLOW_CHECK(wait());
   begun->times.execute = milliseconds_since(warming);
   AFTERGLOW_CHECK(images.prepare(program, host));
   begun->source = host.at("source");
-  const auto began = Clock::now();
-  AFTERGLOW_CHECK(images.upload(program, host, choose.look));
-  begun->times.upload = milliseconds_since(began);
+  return {};
+}
 
+/// Returns how long it took.
+Result<double> FrameRunner::State::upload(const Program& program, const std::map<std::string, HostImage>& host,
+                                          bool look) {
+  const auto began = Clock::now();
+  AFTERGLOW_CHECK(images.upload(program, host, look));
+  return milliseconds_since(began);
+}
+
+/// Everything of a frame that has been uploaded but waiting for it and reading it back.
+Result<void> FrameRunner::State::launch(Program& program, KernelTiming timing, const Choose& choose) {
   Program* chosen = &program;
   if (choose.program) {
     AFTERGLOW_TRY(chosen, choose.program(choose.look ? images.inputs.found("source") : SourceContent{}));
@@ -235,19 +261,55 @@ Result<void> FrameRunner::State::start(Program& program, const std::map<std::str
     images.result.set_writer(chosen->id());
   }
   begun->ran = chosen;
+  shown = chosen->parts().images[chosen->graph().result];
+  flags = chosen->flags_non_finite();
   return {};
+}
+
+/// With whole staging buffers the result is on its way back before anybody waits for it.
+Result<void> FrameRunner::State::begin_download() {
+  if (!images.whole_staging() || !begun->ran) return {};
+  return images.result.begin_download(images.staging, *shown);
 }
 
 Result<void> FrameRunner::State::begin(Program& program, const std::map<std::string, HostImage>& host,
                                        KernelTiming timing, const Choose& choose) {
-  begun = Begun{};
-  shown.reset();
-  auto started = start(program, host, timing, choose);
-  if (!started) return given_up(std::move(started));
-  if (!begun->ran) return {};
-  shown = begun->ran->parts().images[begun->ran->graph().result];
-  flags = begun->ran->flags_non_finite();
+  const auto all = [&]() -> Result<void> {
+    AFTERGLOW_CHECK(prepare(program, host));
+    AFTERGLOW_TRY(begun->times.upload, upload(program, host, choose.look));
+    return launch(program, timing, choose);
+  };
+  auto done = all();
+  return done ? std::move(done) : given_up(std::move(done));
+}
+
+/// Begins a frame whose pixels another thread converts meanwhile.
+Result<void> FrameRunner::State::begin_packing(Program& program, const std::map<std::string, HostImage>& host,
+                                               const Choose& choose) {
+  if (auto prepared = prepare(program, host); !prepared) return given_up(std::move(prepared));
+  packing = Packing{&program, host, choose};
+  packing->uploaded = std::async(std::launch::async, [this, &program, &own = packing->host, look = choose.look] {
+    return upload(program, own, look);
+  });
   return {};
+}
+
+/// Goes on with such a frame. What fails is told when it is waited for.
+void FrameRunner::State::launch_packed() {
+  if (!packing) return;
+  packing->uploaded.wait();
+  Packing packed = *std::exchange(packing, std::nullopt);
+  const auto all = [&]() -> Result<void> {
+    AFTERGLOW_TRY(begun->times.upload, packed.uploaded.get());
+    AFTERGLOW_CHECK(launch(*packed.program, KernelTiming::none, packed.choose));
+    return begin_download();
+  };
+  auto done = all();
+  if (done) return;
+  (void)submitter.wait();
+  (void)images.staging.wait();
+  begun->submitted.reset();
+  begun->failed = std::move(done).error();
 }
 
 /// Nothing may be on its way between images that are made anew.
@@ -268,11 +330,13 @@ Result<FrameTimes> FrameRunner::State::end() {
 Result<void> FrameRunner::begin(Program& program, const std::map<std::string, HostImage>& inputs, KernelTiming timing,
                                 const Choose& choose) {
   State& s = *state_;
+  if (s.images.whole_staging() && timing == KernelTiming::none) return s.begin_packing(program, inputs, choose);
   AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
-  if (!s.images.whole_staging() || !s.begun->ran) return {};
-  auto read_back = s.images.result.begin_download(s.images.staging, *s.shown);
+  auto read_back = s.begin_download();
   return read_back ? std::move(read_back) : s.given_up(std::move(read_back));
 }
+
+void FrameRunner::launch() { state_->launch_packed(); }
 
 Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
   State& s = *state_;
@@ -306,6 +370,7 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
   out.clamped = 0;
   out.flagged = false;
   if (!s.begun) return Error{ErrorKind::other, "no frame began"};
+  s.launch_packed();
   Program* const ran = s.begun->ran;
   const HostImage source = s.begun->source;
   AFTERGLOW_TRY(FrameTimes times, s.end());

@@ -47,10 +47,14 @@ class FrameRunner {
   /// written. Errors: other (an input is missing or of another size), io (over `max_memory`), device.
   Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
                          KernelTiming timing, const Choose& choose = Choose{});
-  /// The first half of `run`: packs, uploads and submits. With `timing` it waits for the device, else it does not. What
-  /// `inputs` point at must stay until `finish`. Errors: those of `run`; then there is nothing to finish.
+  /// The first half of `run`: packs, uploads and submits. With `timing` it waits for the device, else it does not. With
+  /// whole staging buffers another thread packs, and the rest is left for `launch`, `wait` or `finish`. What `inputs`
+  /// point at must stay until `finish`. Errors: those of `run`; then there is nothing to finish.
   Result<void> begin(Program& program, const std::map<std::string, HostImage>& inputs, KernelTiming timing,
                      const Choose& choose);
+  /// Submits the frame that began, once its pixels are packed; nothing where that has been done. What fails is told by
+  /// `finish`. The program must still be the one that frames run.
+  void launch();
   /// Begins to draw a pixel with each kernel of a program that frames will run: drivers of CPU devices compile a kernel
   /// when something is first drawn with it (exec/cpu/warm_up.h), and need not do so in the first frame, which waits for
   /// this. Makes the images of such frames. No frame may be in flight. `backwards`: see Program::record_a_pixel_each.

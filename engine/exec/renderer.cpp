@@ -26,6 +26,7 @@ struct Renderer::State {
   std::size_t oldest = 0;  ///< slot of the frame that is collected next
   std::size_t used = 0;    ///< frames in flight, from there on
 
+  void launch();
   Slot& next() { return slots[(oldest + used) % slots.size()]; }
   Result<void> wait();
   /// The program for `look`ed-at frames; notes what it leaves out.
@@ -54,10 +55,16 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Device& device, const Rendere
 int Renderer::frames() const { return static_cast<int>(state_->slots.size()); }
 int Renderer::in_flight() const { return static_cast<int>(state_->used); }
 Result<void> Renderer::wait() { return state_->wait(); }
+void Renderer::launch() { state_->launch(); }
 
 Result<void> Renderer::State::wait() {
   for (std::size_t i = 0; i < slots.size(); ++i) AFTERGLOW_CHECK(slots[(oldest + i) % slots.size()].runner->wait());
   return {};
+}
+
+/// Frames that are being packed run the program that their cache holds now.
+void Renderer::State::launch() {
+  for (std::size_t i = 0; i < used; ++i) slots[(oldest + i) % slots.size()].runner->launch();
 }
 
 /// A program's own record of what it has made is of the slot that it ran in last.
@@ -133,6 +140,7 @@ Result<void> Renderer::submit(RenderRequest request) {
   State& s = *state_;
   if (s.used == s.slots.size()) return Error{ErrorKind::other, "the frame before has to be collected first"};
   if (request.timing != KernelTiming::none) AFTERGLOW_CHECK(s.wait());
+  s.launch();
   State::Slot& slot = s.next();
   AFTERGLOW_TRY(Program* const program, s.take_program(request, slot));
   slot.runs = program != nullptr;

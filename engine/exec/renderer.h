@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The one way to run a stack: frames go in, one after the other, and come out in the same order. Where pixels take the
-// way over staging buffers, several are in flight: one is packed and uploaded while the one before it runs and the one
+// way over staging buffers, several are in flight: another thread packs one while the one before it runs and the one
 // before that is read back.
 #pragma once
 
@@ -30,8 +30,7 @@ struct RenderRequest {
   ProgramCache* programs = nullptr;  ///< null: nothing runs, the result is the source
   ShaderLibrary* shaders = nullptr;
   FrameWork work{};
-  /// "source" and the auxiliary images that the graph asks for. The source's pixels must stay until `collect`, the
-  /// others until `submit` returns.
+  /// "source" and the auxiliary images that the graph asks for. Their pixels must stay until `launch`, the source's until `collect`.
   std::map<std::string, HostImage> inputs{};
   KernelTiming timing = KernelTiming::none;  ///< others than none: no other frame is in flight meanwhile
 };
@@ -62,8 +61,12 @@ class Renderer {
   Result<Program*> warm_up(ProgramCache& programs, ShaderLibrary& shaders);
 
   /// Makes the frame's program the present one of its cache, packs, uploads and submits. Needs `in_flight` below
-  /// `frames`. Errors: script, other (an input is missing or of another size), io (over `max_memory`), device.
+  /// `frames`. Where several may be in flight the frame is submitted by what is called next, and what fails then is told
+  /// by `collect`. Errors: script, other (an input is missing or of another size), io (over `max_memory`), device.
   Result<void> submit(RenderRequest request);
+  /// Waits for what is being packed, and submits it: from then on nothing but a source that is the result is read. What
+  /// fails is told by `collect`.
+  void launch();
   /// Waits for the oldest frame and reads its result back. Errors: device, other (nothing is in flight).
   Result<FrameReport> collect(HostResult& out);
   /// Both, for one frame alone.

@@ -12,14 +12,12 @@ namespace {
 
 /// Large enough that a submission costs little beside its copy, small beside a 4K picture (127 MiB).
 constexpr VkDeviceSize kBandBytes = 8u << 20;
+/// Of whole pictures: one band for nearly all of them, which all threads convert at once; what a device gives in one
+/// piece has a limit.
+constexpr VkDeviceSize kWholeBandBytes = 512u << 20;
 
 VkDeviceSize row_bytes(const StagedImage& image) {
   return static_cast<VkDeviceSize>(image.size.width) * bytes_per_pixel(image.format);
-}
-
-int rows_per_band(const StagedImage& image) {
-  return static_cast<int>(
-      std::clamp<VkDeviceSize>(kBandBytes / row_bytes(image), 1, static_cast<VkDeviceSize>(image.size.height)));
 }
 
 VkBufferImageCopy copy_of(const StagedImage& image, int first_row, int rows) {
@@ -36,10 +34,14 @@ constexpr auto kShader = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 
 }  // namespace
 
+int Staging::rows_per_band(const StagedImage& image) const {
+  return static_cast<int>(std::clamp<VkDeviceSize>((whole_ ? kWholeBandBytes : kBandBytes) / row_bytes(image), 1,
+                                                   static_cast<VkDeviceSize>(image.size.height)));
+}
+
 int Staging::bands_for(const StagedImage& image) const {
   constexpr int kTurns = 2;
-  const int all = (image.size.height + rows_per_band(image) - 1) / rows_per_band(image);
-  return whole_ ? std::max(all, kTurns) : kTurns;
+  return whole_ ? (image.size.height + rows_per_band(image) - 1) / rows_per_band(image) : kTurns;
 }
 
 VkDeviceSize Staging::bytes(const StagedImage& image) const {

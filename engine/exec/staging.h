@@ -3,6 +3,7 @@
 // time.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <vector>
 
@@ -63,6 +64,7 @@ class Staging {
   Result<void> prepare(Bands& bands, std::size_t first, const StagedImage& image, HostAccess access);
 
   Result<void> submit_download(Band& band, const StagedImage& image, VkImageLayout layout, int first, int from, int to);
+  int rows_per_band(const StagedImage& image) const;
   int bands_for(const StagedImage& image) const;
 
   const Device* device_;
@@ -70,7 +72,7 @@ class Staging {
   bool begun_ = false;    ///< a download
   std::size_t next_ = 0;  ///< band of the next upload, with `whole`
   Bands uploads_, downloads_;
-  int buffers_ = 0;
+  std::atomic<int> buffers_ = 0;  ///< asked for while another thread uploads
 };
 
 }  // namespace afterglow

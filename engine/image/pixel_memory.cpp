@@ -7,59 +7,51 @@
 
 namespace afterglow {
 
-std::vector<float> PixelMemory::take(std::size_t count) {
-  std::vector<std::vector<float>> others;  // go after the lock
-  std::vector<std::vector<std::uint8_t>> other_codes;
+namespace {
+
+template <class Value>
+std::vector<Value> take_last(std::vector<std::vector<Value>>& free) {
+  if (free.empty()) return {};
+  std::vector<Value> last = std::move(free.back());
+  free.pop_back();
+  return last;
+}
+
+}  // namespace
+
+/// Memory of one kind for so many values. What was for another size goes first.
+template <class Value>
+std::vector<Value> PixelMemory::take(std::vector<std::vector<Value>> Kept::* kind, std::size_t count) {
+  Kept others;  // goes after the lock
+  std::vector<Value> values;
   {
     const std::lock_guard lock(mutex_);
-    if (count_ != count) {
-      others.swap(free_);
-      other_codes.swap(free_codes_);
-    }
+    if (count_ != count) std::swap(others, free_);
     count_ = count;
-    if (!free_.empty()) {
-      std::vector<float> pixels = std::move(free_.back());
-      free_.pop_back();
-      return pixels;
-    }
+    values = take_last(free_.*kind);
   }
-  others.clear();
-  other_codes.clear();
-  std::vector<float> pixels;
-  resize_for_picture(pixels, count);
-  return pixels;
+  others = {};
+  resize_for_picture(values, count);
+  return values;
 }
+
+std::vector<float> PixelMemory::take(std::size_t count) { return take(&Kept::pixels, count); }
+std::vector<std::uint16_t> PixelMemory::take_halves(std::size_t count) { return take(&Kept::halves, count); }
 
 std::vector<std::uint8_t> PixelMemory::take_codes() {
   const std::lock_guard lock(mutex_);
-  if (free_codes_.empty()) return {};
-  std::vector<std::uint8_t> codes = std::move(free_codes_.back());
-  free_codes_.pop_back();
-  return codes;
-}
-
-std::vector<std::uint16_t> PixelMemory::take_halves(std::size_t count) {
-  std::vector<std::uint16_t> halves;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!free_halves_.empty()) {
-      halves = std::move(free_halves_.back());
-      free_halves_.pop_back();
-    }
-  }
-  resize_for_picture(halves, count);
-  return halves;
+  return take_last(free_.codes);
 }
 
 void PixelMemory::give(Picture&& picture) {
   Picture done = std::move(picture);  // all of it goes, whoever holds what is left
-  std::vector<float> pixels = std::move(done.color.pixels);
-  std::vector<std::uint8_t> codes = std::move(done.unorm8);
-  std::vector<std::uint16_t> halves = std::move(done.halves);
   const std::lock_guard lock(mutex_);
-  if (!halves.empty()) free_halves_.push_back(std::move(halves));
-  if (!codes.empty() && codes.size() == count_) free_codes_.push_back(std::move(codes));
-  if (!pixels.empty() && pixels.size() == count_) free_.push_back(std::move(pixels));
+  const auto keep = [this](auto& free, auto& values) {
+    if (!values.empty() && values.size() == count_) free.push_back(std::move(values));
+  };
+  keep(free_.pixels, done.color.pixels);
+  keep(free_.halves, done.halves);
+  keep(free_.codes, done.unorm8);
 }
 
 WorkMemory::Block WorkMemory::take(std::size_t size) {

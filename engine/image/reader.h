@@ -35,11 +35,17 @@ class PixelMemory {
   void give(Picture&& picture);
 
  private:
+  struct Kept {
+    std::vector<std::vector<float>> pixels;
+    std::vector<std::vector<std::uint8_t>> codes;
+    std::vector<std::vector<std::uint16_t>> halves;
+  };
+  template <class Value>
+  std::vector<Value> take(std::vector<std::vector<Value>> Kept::* kind, std::size_t count);
+
   std::mutex mutex_;
   std::size_t count_ = 0;  ///< that was asked for last
-  std::vector<std::vector<float>> free_;
-  std::vector<std::vector<std::uint8_t>> free_codes_;
-  std::vector<std::vector<std::uint16_t>> free_halves_;
+  Kept free_;
 };
 
 /// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.

@@ -47,8 +47,6 @@ struct Session::State {
   std::optional<Error> failed;  ///< it did not open
   std::unique_ptr<Device> device;
   std::unique_ptr<Stack> stack;
-  std::unique_ptr<Renderer> renderer;
-  std::unique_ptr<Tracer> tracer;  ///< once a frame was traced
   /// A frame that is in flight.
   struct Frame {
     Picture picture;
@@ -58,7 +56,9 @@ struct Session::State {
     bool runs = false;
     bool codes = false;  ///< the result are 8-bit codes
   };
-  std::deque<Frame> frames;
+  std::deque<Frame> frames;  ///< the renderer reads their pictures
+  std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<Tracer> tracer;  ///< once a frame was traced
   FrameReport last;              ///< of the frame that was collected last
   std::vector<Skipped> skipped;  ///< by no frame like that one
   HostResult result;
@@ -197,6 +197,7 @@ Result<void> Session::State::submit(Picture& picture, FrameRequest request) {
 Result<void> Session::collect(Picture& picture) {
   State& s = *state_;
   if (s.frames.empty()) return Error{ErrorKind::other, "no frame is in flight"};
+  s.renderer->launch();  // the picture's pixels are read until then
   State::Frame frame = std::move(s.frames.front());
   s.frames.pop_front();
   std::vector<std::uint8_t> codes = std::move(picture.unorm8);

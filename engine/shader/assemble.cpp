@@ -112,7 +112,8 @@ class Assembler {
         row_ += "  if (any(greaterThan(abs(ag_color.rgb), vec3(65504.0)))) ag_light = uintBitsToFloat(0x7f800000u);\n";
       row_ += "  ag_color = ag_round_to_half(ag_color);\n";
     }
-    if (kernel_.target == KernelTarget::unorm8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
+    if (kernel_.target == KernelTarget::unorm8)  // the nearest code: some devices find it with eight digits behind it
+      row_ += "  ag_color = floor(clamp(ag_color, 0.0, 1.0) * 255.0 + 0.5) * (1.0 / 255.0);\n";
     if (watches()) row_ += "  bool ag_finite = (floatBitsToUint(ag_light) & 0x7f800000u) != 0x7f800000u;\n";
     if (kernel_.finite_check == FiniteCheck::flag)
       row_ += fmt::format("  ag_color.a {} float(ag_finite);\n", kernel_.target == KernelTarget::unorm8 ? "*=" : "=");

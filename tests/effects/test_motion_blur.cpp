@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <glm/common.hpp>
+#include <random>
 
 #include "cases.h"
 #include "reference/motion_blur.h"
@@ -13,12 +14,15 @@ namespace {
 
 using namespace reference;
 
-/// Motion that turns over the picture, up to `length` pixels a frame.
+/// Motion that turns over the picture, up to `length` pixels a frame. No two ways are as long, as rounding would say
+/// which of them is the longest around.
 Scene moving(Scene scene, double length) {
+  std::mt19937 random(7);
   auto& motion = scene.motion.emplace(scene.source.size());
   for (int y = 0; y < motion.height; ++y)
     for (int x = 0; x < motion.width; ++x) {
-      const double angle = 0.07 * x + 0.05 * y, way = length * (0.5 + 0.5 * std::sin(0.11 * x - 0.13 * y));
+      const double own = 1 - 0.01 * random() / static_cast<double>(std::mt19937::max());
+      const double angle = 0.07 * x + 0.05 * y, way = own * length * (0.5 + 0.5 * std::sin(0.11 * x - 0.13 * y));
       motion.at(x, y) = Rgba(std::cos(angle) * way, std::sin(angle) * way, 0, 1);
     }
   motion = in_floats(motion);
