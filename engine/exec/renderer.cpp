@@ -55,7 +55,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Device& device, const Rendere
 int Renderer::frames() const { return static_cast<int>(state_->slots.size()); }
 int Renderer::in_flight() const { return static_cast<int>(state_->used); }
 Result<void> Renderer::wait() { return state_->wait(); }
-void Renderer::launch() { state_->launch(); }
+void Renderer::launch() {
+  if (state_->used > 0) state_->slots[state_->oldest].runner->launch();
+}
 
 Result<void> Renderer::State::wait() {
   for (std::size_t i = 0; i < slots.size(); ++i) AFTERGLOW_CHECK(slots[(oldest + i) % slots.size()].runner->wait());

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -16,6 +17,7 @@
 
 #include "core/file_time.h"
 #include "core/half.h"
+#include "core/large_pages.h"
 #include "core/parallel.h"
 #include "core/spares.h"
 #include "image/exr_zip.h"
@@ -143,7 +145,14 @@ class LineReader {
     const int chunk_bytes = static_cast<int>(std::min<std::size_t>(line_bytes_ * lines_, kFetchedBytes));
     const int most =
         std::min(chunks, std::max(2 * threads, static_cast<int>(kFetchedBytes) / std::max(chunk_bytes, 1)));
+    // In one piece: asking the system for each is what readers that work side by side wait for.
+    const std::size_t room = chunk_room(), helpers = static_cast<std::size_t>(std::min(threads, most));
+    const std::size_t bytes = room * (static_cast<std::size_t>(most) + 2 * helpers);
+    const auto memory = std::make_unique_for_overwrite<std::uint8_t[]>(bytes);
+    use_large_pages(memory.get(), bytes);
     std::vector<Packed> packed(static_cast<std::size_t>(most));
+    for (std::size_t i = 0; i < packed.size(); ++i) packed[i].bytes = memory.get() + i * room;
+    std::atomic<std::uint8_t*> rest = memory.get() + packed.size() * room;
     Spares<Unpacker> unpackers;
     for (int first = 0; first < chunks; first += most) {
       const int count = std::min(most, chunks - first);
@@ -153,7 +162,10 @@ class LineReader {
       }
       const long long samples = static_cast<long long>(line_bytes_) * lines_ * count;
       parallel_rows(count, samples, [&](int begin, int end) {
-        const auto unpacker = unpackers.borrow([&] { return std::make_unique<Unpacker>(chunk_room()); });
+        const auto unpacker = unpackers.borrow([&] {
+          std::uint8_t* const own = rest.fetch_add(static_cast<std::ptrdiff_t>(2 * room));
+          return std::make_unique<Unpacker>(own, own + room);
+        });
         for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], *unpacker);
       });
     }
@@ -162,36 +174,35 @@ class LineReader {
  private:
   /// A chunk as the file has it.
   struct Packed {
-    std::unique_ptr<std::uint8_t[]> bytes;  ///< room for one that is stored as it is
+    std::uint8_t* bytes = nullptr;  ///< room for one that is stored as it is
     std::size_t size = 0;
   };
   /// What a thread needs for one chunk after the other.
   struct Unpacker {
-    explicit Unpacker(std::size_t room) : bytes(std::make_unique_for_overwrite<std::uint8_t[]>(room)) {}
+    Unpacker(std::uint8_t* bytes_in, std::uint8_t* apart_in) : bytes(bytes_in), apart(apart_in) {}
     ExrUnzip unzip;
-    std::unique_ptr<std::uint8_t[]> bytes;
+    std::uint8_t *bytes, *apart;  ///< room for one each
   };
 
   int lines_of(int chunk) const { return std::min(lines_, part_.data_window.height - chunk * lines_); }
   std::size_t chunk_room() const { return line_bytes_ * static_cast<std::size_t>(lines_); }
 
   void fetch(int chunk, Packed& packed) {
-    if (!packed.bytes) packed.bytes = std::make_unique_for_overwrite<std::uint8_t[]>(chunk_room());
     const std::size_t most =
         line_bytes_ * static_cast<std::size_t>(lines_of(chunk));  // what does not get shorter is stored as it is
     int size = static_cast<int>(most);
-    input_.rawPixelDataToBuffer(part_.data_window.y + chunk * lines_, reinterpret_cast<char*>(packed.bytes.get()),
-                                size);
+    input_.rawPixelDataToBuffer(part_.data_window.y + chunk * lines_, reinterpret_cast<char*>(packed.bytes), size);
     if (size < 0 || static_cast<std::size_t>(size) > most) throw damaged(chunk);
     packed.size = static_cast<std::size_t>(size);
   }
 
   void unpack(int chunk, const Packed& packed, Unpacker& unpacker) const {
     const std::size_t length = line_bytes_ * static_cast<std::size_t>(lines_of(chunk));
-    const std::uint8_t* stored = packed.bytes.get();
+    const std::uint8_t* stored = packed.bytes;
     if (packed.size != length) {
-      stored = unpacker.bytes.get();
-      if (!unpacker.unzip.run({packed.bytes.get(), packed.size}, {unpacker.bytes.get(), length})) throw damaged(chunk);
+      stored = unpacker.bytes;
+      if (!unpacker.unzip.run({packed.bytes, packed.size}, {unpacker.bytes, length}, {unpacker.apart, length}))
+        throw damaged(chunk);
     }
     for (int y = 0; y < lines_of(chunk); ++y, stored += line_bytes_) take_(chunk * lines_ + y, stored);
     if (rows_) rows_(chunk * lines_, chunk * lines_ + lines_of(chunk));

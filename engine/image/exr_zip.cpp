@@ -132,13 +132,13 @@ ExrUnzip::ExrUnzip() : inflate_(libdeflate_alloc_decompressor()) {
 
 ExrUnzip::~ExrUnzip() { libdeflate_free_decompressor(inflate_); }
 
-bool ExrUnzip::run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes) {
-  apart_.resize(bytes.size());
-  const auto done = libdeflate_zlib_decompress(inflate_, packed.data(), packed.size(), apart_.data(), apart_.size(),
+bool ExrUnzip::run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes,
+                   std::span<std::uint8_t> apart) {
+  const auto done = libdeflate_zlib_decompress(inflate_, packed.data(), packed.size(), apart.data(), apart.size(),
                                                nullptr);  // no length asked for: it must be exactly this
   if (done != LIBDEFLATE_SUCCESS) return false;
-  add_up(apart_);
-  put_together(apart_, bytes);
+  add_up(apart);
+  put_together(apart, bytes);
   return true;
 }
 

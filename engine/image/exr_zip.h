@@ -22,12 +22,12 @@ class ExrUnzip {
   ExrUnzip(const ExrUnzip&) = delete;
   ExrUnzip& operator=(const ExrUnzip&) = delete;
 
-  /// `bytes` is as long as the chunk was before. False when `packed` is damaged, or makes another length.
-  bool run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes);
+  /// `bytes` is as long as the chunk was before, and so is `apart`, room to work in. False when `packed` is damaged, or
+  /// makes another length.
+  bool run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes, std::span<std::uint8_t> apart);
 
  private:
   libdeflate_decompressor* inflate_;
-  std::vector<std::uint8_t> apart_;
 };
 
 /// The other way. One thread's.

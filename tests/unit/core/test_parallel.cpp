@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "core/parallel.h"
@@ -29,6 +32,41 @@ TEST(ParallelFor, AnExceptionOfAnyThreadEndsTheLoop) {
   EXPECT_THROW(parallel_for(1'000'000, work), std::runtime_error);
   EXPECT_LT(done, 500'000u);
 }
+
+TEST(ParallelFor, LoopsInLoopsAndOfManyThreadsEnd) {
+  std::atomic<int> visits = 0;
+  std::vector<std::jthread> callers;
+  for (int k = 0; k < 6; ++k)
+    callers.emplace_back([&] {
+      for (int i = 0; i < 200; ++i) parallel_for(7, [&](std::size_t) { parallel_for(3, [&](std::size_t) { ++visits; }); });
+    });
+  callers.clear();
+  EXPECT_EQ(visits, 6 * 200 * 7 * 3);
+}
+
+#ifndef __SANITIZE_THREAD__  // which allows such children no threads
+
+/// The threads are the parent's, and in the middle of something.
+TEST(ParallelFor, AChildOfForkMakesThreadsOfItsOwn) {
+  std::atomic<bool> done = false;
+  std::jthread other([&] {
+    while (!done) parallel_for(20, [](std::size_t) {});
+  });
+  for (int i = 0; i < 20; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      std::atomic<int> visits = 0;
+      parallel_for(1000, [&](std::size_t) { ++visits; });
+      _exit(visits == 1000 ? 0 : 1);
+    }
+    int status = -1;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  done = true;
+}
+
+#endif
 
 TEST(Spares, AreMadeForThoseThatWorkAtATimeAndKeepWhatTheyHold) {
   struct Thing {
