@@ -33,11 +33,12 @@ struct FrameLoopOptions {
 /// Bytes that a frame takes.
 struct FrameNeed {
   std::uint64_t device = 0, reading = 0, result = 0;
-  std::uint64_t held = 0;  ///< whatever the number of frames: decoders' and encoders' frames
+  std::uint64_t held = 0;       ///< whatever the number of frames: decoders' and encoders' frames
+  std::uint64_t in_flight = 0;  ///< pictures of the frames beside the one that is processed, and what all are staged in
   std::uint64_t one_frame() const { return device + reading + result + held; }
   /// So many are read, one is processed, `written` are being written.
   std::uint64_t frames(std::uint64_t read, std::uint64_t written) const {
-    return device + (1 + read) * reading + (1 + written) * result + held;
+    return device + in_flight + (1 + read) * reading + (1 + written) * result + held;
   }
 };
 

@@ -111,8 +111,8 @@ class Helpers {
   bool ended_ = false;
 };
 
-/// Never freed: threads that nobody waits for may outlive what is static. A child of fork() has none of the threads, and
-/// makes its own.
+/// Never freed: threads that nobody waits for may outlive what is static. A child of fork() has none of the threads,
+/// and makes its own.
 std::atomic<Helpers*> all_helpers = nullptr;
 
 Helpers& helpers() {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <future>
+#include <system_error>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -288,9 +289,12 @@ Result<void> FrameRunner::State::begin_packing(Program& program, const std::map<
                                                const Choose& choose) {
   if (auto prepared = prepare(program, host); !prepared) return given_up(std::move(prepared));
   packing = Packing{&program, host, choose};
-  packing->uploaded = std::async(std::launch::async, [this, &program, &own = packing->host, look = choose.look] {
-    return upload(program, own, look);
-  });
+  const auto pack = [this, &program, &own = packing->host, look = choose.look] { return upload(program, own, look); };
+  try {
+    packing->uploaded = std::async(std::launch::async, pack);
+  } catch (const std::system_error&) {  // no more threads to be had
+    packing->uploaded = std::async(std::launch::deferred, pack);
+  }
   return {};
 }
 

@@ -30,8 +30,8 @@ struct RenderRequest {
   ProgramCache* programs = nullptr;  ///< null: nothing runs, the result is the source
   ShaderLibrary* shaders = nullptr;
   FrameWork work{};
-  /// "source" and the auxiliary images that the graph asks for. Their pixels must stay until `launch`, the source's until
-  /// `collect`.
+  /// "source" and the auxiliary images that the graph asks for. Their pixels must stay until `launch`, the source's
+  /// until `collect`.
   std::map<std::string, HostImage> inputs{};
   KernelTiming timing = KernelTiming::none;  ///< others than none: no other frame is in flight meanwhile
 };
@@ -62,11 +62,11 @@ class Renderer {
   Result<Program*> warm_up(ProgramCache& programs, ShaderLibrary& shaders);
 
   /// Makes the frame's program the present one of its cache, packs, uploads and submits. Needs `in_flight` below
-  /// `frames`. Where several may be in flight the frame is submitted by what is called next, and what fails then is told
-  /// by `collect`. Errors: script, other (an input is missing or of another size), io (over `max_memory`), device.
+  /// `frames`. Where several may be in flight the frame is submitted by what is called next, and what fails then is
+  /// told by `collect`. Errors: script, other (an input is missing or of another size), io (over `max_memory`), device.
   Result<void> submit(RenderRequest request);
-  /// Submits the oldest frame, if it is still being packed, and those before it: from then on its inputs may change, but
-  /// for the pixels of a source that may be its result. What fails is told by `collect`.
+  /// Submits the oldest frame, if it is still being packed, and those before it: from then on its inputs may change,
+  /// but for the pixels of a source that may be its result. What fails is told by `collect`.
   void launch();
   /// Waits for the oldest frame and reads its result back. Errors: device, other (nothing is in flight).
   Result<FrameReport> collect(HostResult& out);

@@ -132,8 +132,7 @@ ExrUnzip::ExrUnzip() : inflate_(libdeflate_alloc_decompressor()) {
 
 ExrUnzip::~ExrUnzip() { libdeflate_free_decompressor(inflate_); }
 
-bool ExrUnzip::run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes,
-                   std::span<std::uint8_t> apart) {
+bool ExrUnzip::run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes, std::span<std::uint8_t> apart) {
   const auto done = libdeflate_zlib_decompress(inflate_, packed.data(), packed.size(), apart.data(), apart.size(),
                                                nullptr);  // no length asked for: it must be exactly this
   if (done != LIBDEFLATE_SUCCESS) return false;

@@ -21,7 +21,7 @@ std::vector<Value> take_last(std::vector<std::vector<Value>>& free) {
 
 /// Memory of one kind for so many values. What was for another size goes first.
 template <class Value>
-std::vector<Value> PixelMemory::take(std::vector<std::vector<Value>> Kept::* kind, std::size_t count) {
+std::vector<Value> PixelMemory::take(std::vector<std::vector<Value>> Kept::*kind, std::size_t count) {
   Kept others;  // goes after the lock
   std::vector<Value> values;
   {

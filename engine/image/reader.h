@@ -41,7 +41,7 @@ class PixelMemory {
     std::vector<std::vector<std::uint16_t>> halves;
   };
   template <class Value>
-  std::vector<Value> take(std::vector<std::vector<Value>> Kept::* kind, std::size_t count);
+  std::vector<Value> take(std::vector<std::vector<Value>> Kept::*kind, std::size_t count);
 
   std::mutex mutex_;
   std::size_t count_ = 0;  ///< that was asked for last

@@ -59,8 +59,8 @@ struct Session::State {
   std::deque<Frame> frames;  ///< the renderer reads their pictures
   std::unique_ptr<Renderer> renderer;
   std::unique_ptr<Tracer> tracer;  ///< once a frame was traced
-  FrameReport last;              ///< of the frame that was collected last
-  std::vector<Skipped> skipped;  ///< by no frame like that one
+  FrameReport last;                ///< of the frame that was collected last
+  std::vector<Skipped> skipped;    ///< by no frame like that one
   HostResult result;
   bool flagged = false;  ///< the last frame's result
   SessionTimes times;
@@ -122,7 +122,7 @@ Result<void> Session::State::use(OpenedDevice opened) {
   return {};
 }
 
-int Session::frames() const { return state_->renderer->frames(); }
+int Session::frames() const { return state_->renderer ? state_->renderer->frames() : 1; }
 int Session::in_flight() const { return static_cast<int>(state_->frames.size()); }
 
 Result<void> Session::prepare(FrameRequest frame) {

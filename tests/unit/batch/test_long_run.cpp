@@ -89,7 +89,8 @@ TEST_F(LongRun, FramesThatSkipTheSameShareOneList) {
     EXPECT_EQ(frame.skipped->front().reason, "alpha is 1 everywhere");
     lists.insert(frame.skipped.get());
   }
-  EXPECT_LE(lists.size(), 2u);  // the first is run; the others are the same picture, which is told where one is in flight
+  EXPECT_LE(lists.size(),
+            2u);  // the first is run; the others are the same picture, which is told where one is in flight
 }
 
 TEST_F(LongRun, NothingIsKeptOfAFrameThatIsDone) {

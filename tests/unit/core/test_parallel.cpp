@@ -38,7 +38,8 @@ TEST(ParallelFor, LoopsInLoopsAndOfManyThreadsEnd) {
   std::vector<std::jthread> callers;
   for (int k = 0; k < 6; ++k)
     callers.emplace_back([&] {
-      for (int i = 0; i < 200; ++i) parallel_for(7, [&](std::size_t) { parallel_for(3, [&](std::size_t) { ++visits; }); });
+      for (int i = 0; i < 200; ++i)
+        parallel_for(7, [&](std::size_t) { parallel_for(3, [&](std::size_t) { ++visits; }); });
     });
   callers.clear();
   EXPECT_EQ(visits, 6 * 200 * 7 * 3);
