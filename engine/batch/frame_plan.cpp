@@ -64,7 +64,7 @@ Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build
   if (need.one_frame() > options_.max_memory)
     return Error{ErrorKind::io,
                  fmt::format("{}x{} pixels need about {} with this preset, more than the {}", context.size.width,
-                             context.size.height, memory_text(need.one_frame()), allowed_memory(options_.max_memory)),
+                             context.size.height, needed_memory(need.one_frame()), allowed_memory(options_.max_memory)),
                  job.input.string()};
   return need;
 }

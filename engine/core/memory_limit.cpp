@@ -66,10 +66,26 @@ const MemoryLimit& memory_limit_of_process() {
   return limit;
 }
 
+namespace {
+
+/// What `memory_text` can tell two sizes apart by.
+std::uint64_t told_step(std::uint64_t bytes) {
+  if (bytes >= 1u << 30) return (1u << 30) / 10;
+  return bytes >= 1u << 20 ? 1u << 20 : bytes >= 1u << 10 ? 1u << 10 : 1;
+}
+
+}  // namespace
+
+std::string needed_memory(std::uint64_t bytes) {
+  const std::uint64_t step = told_step(bytes);
+  return memory_text((bytes + step - 1) / step * step);
+}
+
 std::string allowed_memory(std::uint64_t bytes) {
   const MemoryLimit& usual = memory_limit_of_process();
   const std::string why = bytes == usual.bytes && !usual.of.empty() ? "; by default " + usual.of : "";
-  return fmt::format("{} allowed (--max-memory{})", memory_text(bytes), why);
+  const std::uint64_t step = told_step(bytes);
+  return fmt::format("{} allowed (--max-memory{})", memory_text(bytes / step * step), why);
 }
 
 }  // namespace afterglow

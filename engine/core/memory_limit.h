@@ -20,6 +20,9 @@ MemoryLimit usual_memory_limit(const std::filesystem::path& root = "/");
 /// That of this process, as it was when it was first asked for.
 const MemoryLimit& memory_limit_of_process();
 
+/// "6.1 GiB": rounded up, as what is allowed is rounded down, so that what is more reads as more.
+std::string needed_memory(std::uint64_t bytes);
+
 /// "6.0 GiB allowed (--max-memory)"; a usual limit that is less than usual says where it comes from.
 std::string allowed_memory(std::uint64_t bytes);
 

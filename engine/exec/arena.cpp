@@ -69,7 +69,7 @@ std::vector<Arena::Wanted> Arena::wanted(const Device& device, const Graph& grap
 Result<void> Arena::check_memory(const ArenaOptions& options) const {
   if (memory_.arena <= options.max_memory) return {};
   return Error{ErrorKind::io, fmt::format("the stack needs {} for its images, more than the {}",
-                                          memory_text(memory_.arena), allowed_memory(options.max_memory))};
+                                          needed_memory(memory_.arena), allowed_memory(options.max_memory))};
 }
 
 Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options) {

@@ -35,7 +35,7 @@ Result<void> FrameImages::check_memory(const std::map<std::string, ImageDesc>& d
   std::uint64_t total = other_bytes;
   for (const auto& [name, desc] : descs) total += image_bytes(desc);
   if (total <= options_.max_memory) return {};
-  return Error{ErrorKind::io, fmt::format("the frame needs {} of device memory, more than the {}", memory_text(total),
+  return Error{ErrorKind::io, fmt::format("the frame needs {} of device memory, more than the {}", needed_memory(total),
                                           allowed_memory(options_.max_memory))};
 }
 

@@ -73,7 +73,7 @@ Result<void> Histories::fit(const Device& device, const Graph& graph, const Opti
   }
   if (total > options.max_memory)
     return Error{ErrorKind::io, fmt::format("the stack needs {} for its histories, more than the {}",
-                                            memory_text(total), allowed_memory(options.max_memory))};
+                                            needed_memory(total), allowed_memory(options.max_memory))};
   if (std::erase_if(kept_, [&](const auto& kept) { return !wanted.contains(kept.first); }) > 0)
     images_id_ = next_number();
   for (const auto& history : graph.histories) {

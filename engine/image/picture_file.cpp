@@ -29,7 +29,7 @@ Result<void> check_decoder(const std::filesystem::path& file, std::uint64_t byte
   if (bytes <= limits.max_bytes) return {};
   return Error{
       ErrorKind::io,
-      fmt::format("needs {} to decode, more than the {}", memory_text(bytes), allowed_memory(limits.max_bytes)),
+      fmt::format("needs {} to decode, more than the {}", needed_memory(bytes), allowed_memory(limits.max_bytes)),
       file.string()};
 }
 

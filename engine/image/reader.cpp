@@ -329,7 +329,7 @@ Result<Picture> read_opened(Opened& opened, const ReadOptions& options, Diagnost
   if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
     return Error{
         ErrorKind::io,
-        fmt::format("needs {} of memory, more than the {}", memory_text(bytes), allowed_memory(options.max_bytes)),
+        fmt::format("needs {} of memory, more than the {}", needed_memory(bytes), allowed_memory(options.max_bytes)),
         plan.file->path().string()};
   auto picture = read_planned(plan, options, diagnostics);
   // Whatever was read then, it is neither the old picture nor the new one.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "core/memory_limit.h"
 
@@ -60,6 +61,16 @@ TEST_F(MemoryLimits, GroupsOfTheFirstVersionCountToo) {
   EXPECT_EQ(limit().of, "what the control group / may take");
   put("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
   EXPECT_EQ(limit().of, "");
+}
+
+TEST(MemoryLimit, WhatIsMoreReadsAsMore) {
+  for (const auto& [allowed, told, next] :
+       {std::tuple{2 * kMiB + kMiB / 3, "2 MiB", "3 MiB"}, std::tuple{6 * 1024 * kMiB, "6.0 GiB", "6.1 GiB"},
+        std::tuple{700 * std::uint64_t{1024} + 7, "700 KiB", "701 KiB"},
+        std::tuple{std::uint64_t{12}, "12 bytes", "13 bytes"}}) {
+    EXPECT_EQ(allowed_memory(allowed), std::string(told) + " allowed (--max-memory)");
+    EXPECT_EQ(needed_memory(allowed + 1), next);
+  }
 }
 
 TEST(MemoryLimit, MessagesNameTheOption) {
