@@ -29,8 +29,8 @@
  * that free do nothing. It may open devices of its own, and then ends by _exit(): drivers have exit handlers that wait
  * for threads of the parent.
  *
- * The library has no global state, prints nothing, installs no signal handler and never ends the process. Messages
- * that are no errors go to a callback.
+ * The library has no global state but threads that wait for work; it prints nothing, installs no signal handler and
+ * never ends the process. Messages that are no errors go to a callback.
  *
  * What is stable: names and meanings of this header within one minor version while the major version is 0. */
 #ifndef AFTERGLOW_H

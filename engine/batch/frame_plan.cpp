@@ -58,8 +58,11 @@ Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build
   need.result += sink_.bytes_of_frame(job, context.size, header.has_alpha, header.facts.get());
   need.held = sink_.bytes_held(context.size) + decoder_bytes(job, options_.read.max_bytes);
   need.device = session_.stack().memory_needed(build);
-  if (const auto frames = static_cast<std::uint64_t>(session_.frames()); frames > 1)
-    need.in_flight = (frames - 1) * need.reading + 2 * frames * static_cast<std::uint64_t>(context.size.area()) * 16;
+  // Each of those beside the one that is processed has its picture, and on the device a source and a result, which all
+  // are staged in buffers.
+  const auto others = static_cast<std::uint64_t>(session_.frames() - 1);
+  if (others > 0 && !options_.histories && options_.nan_policy != NanPolicy::fail)
+    need.in_flight = others * need.reading + (4 * others + 2) * static_cast<std::uint64_t>(context.size.area()) * 16;
   largest_need_ = std::max(largest_need_, need.one_frame());
   if (need.one_frame() > options_.max_memory)
     return Error{ErrorKind::io,

@@ -135,7 +135,7 @@ std::string pace_text(const RunReport& report, std::size_t done) {
                       : read >= kMuch * frame && read >= write ? "reading is the limit"
                       : write >= kMuch * frame                 ? "writing is the limit"
                       : device >= kMuch * frame                ? "the device is the limit"
-                                                               : "handing pixels to the device is the limit";
+                                                               : "the work between reading and writing is the limit";
   return fmt::format(
       "pace: {:.2f} frames a second; {:.0f} % of {} processors used; each frame waited {:.1f} ms to be read, {:.1f} ms "
       "for others to "

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <vector>
@@ -68,24 +69,23 @@ const MemoryLimit& memory_limit_of_process() {
 
 namespace {
 
-/// What `memory_text` can tell two sizes apart by.
-std::uint64_t told_step(std::uint64_t bytes) {
-  if (bytes >= 1u << 30) return (1u << 30) / 10;
-  return bytes >= 1u << 20 ? 1u << 20 : bytes >= 1u << 10 ? 1u << 10 : 1;
+/// As memory_text, but rounded so.
+std::string rounded(std::uint64_t bytes, double (*round)(double)) {
+  constexpr double kKiB = 1024, kMiB = 1024 * kKiB, kGiB = 1024 * kMiB;
+  const auto value = static_cast<double>(bytes);
+  if (value >= kGiB) return fmt::format("{:.1f} GiB", round(10 * (value / kGiB)) / 10);
+  if (value >= kMiB) return fmt::format("{:.0f} MiB", round(value / kMiB));
+  return value >= kKiB ? fmt::format("{:.0f} KiB", round(value / kKiB)) : memory_text(bytes);
 }
 
 }  // namespace
 
-std::string needed_memory(std::uint64_t bytes) {
-  const std::uint64_t step = told_step(bytes);
-  return memory_text((bytes + step - 1) / step * step);
-}
+std::string needed_memory(std::uint64_t bytes) { return rounded(bytes, std::ceil); }
 
 std::string allowed_memory(std::uint64_t bytes) {
   const MemoryLimit& usual = memory_limit_of_process();
   const std::string why = bytes == usual.bytes && !usual.of.empty() ? "; by default " + usual.of : "";
-  const std::uint64_t step = told_step(bytes);
-  return fmt::format("{} allowed (--max-memory{})", memory_text(bytes / step * step), why);
+  return fmt::format("{} allowed (--max-memory{})", rounded(bytes, std::floor), why);
 }
 
 }  // namespace afterglow

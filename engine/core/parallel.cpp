@@ -2,19 +2,41 @@
 #include "core/parallel.h"
 
 #include <pthread.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace afterglow {
 namespace {
+
+/// Asked once: rooms are made for as many threads as there may be.
+std::size_t processors() {
+  static const std::size_t known = std::max(1u, std::thread::hardware_concurrency());
+  return known;
+}
+
+/// A thread that hears no signals: those are the host's matter, and its threads'.
+template <class Work>
+std::thread quiet_thread(Work work) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const struct Restore {
+    const sigset_t& before;
+    ~Restore() { pthread_sigmask(SIG_SETMASK, &before, nullptr); }
+  } restore{before};
+  return std::thread(std::move(work));
+}
 
 /// A loop on its caller's thread, which others help with.
 struct Loop {
@@ -64,8 +86,11 @@ class Helpers {
       return false;
     }
     try {
-      const std::size_t most = std::max(1u, std::thread::hardware_concurrency()) - 1;
-      while (threads_.size() < std::min(most, busy_ + loop.wanted)) threads_.emplace_back([this] { help(); });
+      const std::size_t most = processors() - 1;
+      while (threads_.size() < std::min(most, busy_ + loop.wanted)) {
+        threads_.reserve(most);
+        threads_.push_back(quiet_thread([this] { help(); }));
+      }
     } catch (const std::exception&) {
       // No more threads to be had: those that are there do the work.
     }
@@ -88,6 +113,7 @@ class Helpers {
       lock.unlock();
       work_on(loop);
       lock.lock();
+      std::erase(loops_, &loop);  // there is nothing left to begin
       --busy_;
       if (--loop.helping == 0) left_.notify_all();
     }
@@ -111,30 +137,68 @@ class Helpers {
   bool ended_ = false;
 };
 
-/// Never freed: threads that nobody waits for may outlive what is static. A child of fork() has none of the threads,
-/// and makes its own.
-std::atomic<Helpers*> all_helpers = nullptr;
+/// Never freed: threads that nobody waits for may outlive what is static.
+constinit std::atomic<Helpers*> all_helpers = nullptr;
+
+/// A child of fork() has none of the threads, and makes its own.
+const struct Registered {
+  Registered() {
+    pthread_atfork(nullptr, nullptr, [] { all_helpers = nullptr; });
+  }
+  ~Registered() {
+    if (Helpers* const made = all_helpers) made->end();
+  }
+} registered;
 
 Helpers& helpers() {
-  static const bool made = [] {
-    all_helpers = new Helpers;
-    pthread_atfork(nullptr, nullptr, [] { all_helpers = new Helpers; });
-    return true;
-  }();
-  static_cast<void>(made);
-  static const struct Ending {
-    ~Ending() { all_helpers.load()->end(); }  // before the program, or the library, goes
-  } ending;
-  return *all_helpers;
+  Helpers* known = all_helpers;
+  if (known) return *known;
+  auto own = std::make_unique<Helpers>();
+  if (all_helpers.compare_exchange_strong(known, own.get())) return *own.release();
+  return *known;
 }
+
+thread_local bool is_alone = false;
 
 }  // namespace
 
+void loop_alone() { is_alone = true; }
+
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work) {
-  if (count == 0) return;
-  if (count == 1) return work(0);
-  Loop loop{work, count, count - 1};
-  helpers().run(loop);
+  if (count > 1 && !is_alone && processors() > 1) {
+    Loop loop{work, count, std::min(count, processors()) - 1};
+    return helpers().run(loop);
+  }
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
+void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto run = [&] {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    const std::size_t threads = std::min(count, processors());
+    others.reserve(threads);
+    for (std::size_t i = 1; i < threads; ++i) {
+      try {
+        others.emplace_back(run);
+      } catch (const std::system_error&) {
+        break;  // no more threads to be had: those that run do the work
+      }
+    }
+    run();
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace afterglow

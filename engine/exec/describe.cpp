@@ -157,7 +157,7 @@ Result<CompiledKernels> compile_kernels(KernelCompiler& compiler, const std::vec
   for (const auto desc : desc_of) out.index.push_back(unique_of[desc]);
   std::vector<std::optional<Result<CompiledKernel>>> results(order.size());
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return texts[i]->value().glsl.size(); });
-  parallel_for(order.size(), [&](std::size_t k) {
+  parallel_tasks(order.size(), [&](std::size_t k) {
     const std::size_t i = order[k];
     results[static_cast<std::size_t>(unique_of[i])].emplace(compiler.compile(*descs[i], std::move(*texts[i]).value()));
   });

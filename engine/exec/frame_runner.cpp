@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <future>
-#include <system_error>
 #include <utility>
 
+#include "core/exception.h"
 #include "core/stopwatch.h"
 #include "exec/convert.h"
 #include "exec/frame_images.h"
@@ -68,6 +68,9 @@ struct FrameRunner::State {
     std::map<std::string, HostImage> host;
     Choose choose;
     std::future<Result<double>> uploaded{};  ///< how long it took; ends before the rest goes
+
+    Packing(Program* program_in, const std::map<std::string, HostImage>& host_in, const Choose& choose_in)
+        : program(program_in), host(host_in), choose(choose_in) {}
   };
   std::optional<Packing> packing;  // last: its thread uses the others
 
@@ -288,11 +291,13 @@ Result<void> FrameRunner::State::begin(Program& program, const std::map<std::str
 Result<void> FrameRunner::State::begin_packing(Program& program, const std::map<std::string, HostImage>& host,
                                                const Choose& choose) {
   if (auto prepared = prepare(program, host); !prepared) return given_up(std::move(prepared));
-  packing = Packing{&program, host, choose};
-  const auto pack = [this, &program, &own = packing->host, look = choose.look] { return upload(program, own, look); };
+  packing.emplace(&program, host, choose);
+  const auto pack = [this, &program, &own = packing->host, look = choose.look] {
+    return without_exceptions([&] { return upload(program, own, look); });
+  };
   try {
     packing->uploaded = std::async(std::launch::async, pack);
-  } catch (const std::system_error&) {  // no more threads to be had
+  } catch (const std::exception&) {  // no more threads to be had
     packing->uploaded = std::async(std::launch::deferred, pack);
   }
   return {};
@@ -308,7 +313,7 @@ void FrameRunner::State::launch_packed() {
     AFTERGLOW_CHECK(launch(*packed.program, KernelTiming::none, packed.choose));
     return begin_download();
   };
-  auto done = all();
+  auto done = without_exceptions(all);
   if (done) return;
   (void)submitter.wait();
   (void)images.staging.wait();
@@ -377,7 +382,12 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
   s.launch_packed();
   Program* const ran = s.begun->ran;
   const HostImage source = s.begun->source;
-  AFTERGLOW_TRY(FrameTimes times, s.end());
+  auto ended = s.end();
+  if (!ended) {
+    (void)s.images.staging.wait();  // a download may be on its way
+    return std::move(ended).error();
+  }
+  FrameTimes times = std::move(*ended);
   out.clamped = s.images.inputs.clamped();
   if (!ran) {
     s.begun.reset();

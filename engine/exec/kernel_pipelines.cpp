@@ -109,7 +109,7 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
   // nothing is left to do beside it.
   std::ranges::stable_sort(missing, std::greater(), [&](std::size_t i) { return kernels[i].spirv.size(); });
   std::vector<std::optional<Result<Made>>> made(missing.size());
-  parallel_for(made.size(), [&](std::size_t k) {
+  parallel_tasks(made.size(), [&](std::size_t k) {
     const std::size_t i = missing[k];
     made[k].emplace(
         make(device, kernels[i], out.layout(kernels[i]), vertex.get(), format_of(kernels[i], format), names[i]));

@@ -163,8 +163,8 @@ Result<FrameReport> Renderer::collect(HostResult& out) {
   State& s = *state_;
   if (s.used == 0) return Error{ErrorKind::other, "no frame is in flight"};
   State::Slot& slot = s.slots[s.oldest];
-  s.oldest = (s.oldest + 1) % s.slots.size();
   --s.used;
+  if (s.used > 0) s.oldest = (s.oldest + 1) % s.slots.size();  // else one slot is enough
   if (!slot.runs) {
     out.clamped = 0;
     out.flagged = false;

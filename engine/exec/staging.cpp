@@ -35,13 +35,17 @@ constexpr auto kShader = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 }  // namespace
 
 int Staging::rows_per_band(const StagedImage& image) const {
-  return static_cast<int>(std::clamp<VkDeviceSize>((whole_ ? kWholeBandBytes : kBandBytes) / row_bytes(image), 1,
-                                                   static_cast<VkDeviceSize>(image.size.height)));
+  const auto fit = static_cast<int>(std::clamp<VkDeviceSize>((whole_ ? kWholeBandBytes : kBandBytes) / row_bytes(image),
+                                                             1, static_cast<VkDeviceSize>(image.size.height)));
+  if (!whole_) return fit;
+  const int bands = (image.size.height + fit - 1) / fit;
+  return (image.size.height + bands - 1) / bands;  // as many in each
 }
 
 int Staging::bands_for(const StagedImage& image) const {
   constexpr int kTurns = 2;
-  return whole_ ? (image.size.height + rows_per_band(image) - 1) / rows_per_band(image) : kTurns;
+  const int rows = rows_per_band(image);
+  return whole_ ? (image.size.height + rows - 1) / rows : kTurns;
 }
 
 VkDeviceSize Staging::bytes(const StagedImage& image) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pixels between host memory and images of any device, over buffers of a few rows: a large picture never exists a third
-// time.
+// Pixels between host memory and images of any device, over buffers of a few rows, so that a large picture never exists
+// a third time; or over buffers of all of them, so that frames can be in flight.
 #pragma once
 
 #include <atomic>

@@ -25,7 +25,7 @@
 namespace afterglow {
 namespace {
 
-/// Of lines that are fetched before they are unpacked side by side, which starts threads.
+/// Of lines that are fetched before they are unpacked side by side.
 constexpr std::size_t kFetchedBytes = 4 << 20;
 
 /// The samples of one channel in one line, as floats that lie side by side.
@@ -146,8 +146,8 @@ class LineReader {
     const int most =
         std::min(chunks, std::max(2 * threads, static_cast<int>(kFetchedBytes) / std::max(chunk_bytes, 1)));
     // In one piece: asking the system for each is what readers that work side by side wait for.
-    const std::size_t room = chunk_room(), helpers = static_cast<std::size_t>(std::min(threads, most));
-    const std::size_t bytes = room * (static_cast<std::size_t>(most) + 2 * helpers);
+    const std::size_t room = chunk_room(), unpacking = static_cast<std::size_t>(std::min(kMostRanges, most));
+    const std::size_t bytes = room * (static_cast<std::size_t>(most) + 2 * unpacking);
     const auto memory = std::make_unique_for_overwrite<std::uint8_t[]>(bytes);
     use_large_pages(memory.get(), bytes);
     std::vector<Packed> packed(static_cast<std::size_t>(most));

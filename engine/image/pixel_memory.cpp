@@ -9,11 +9,13 @@ namespace afterglow {
 
 namespace {
 
-template <class Value>
-std::vector<Value> take_last(std::vector<std::vector<Value>>& free) {
-  if (free.empty()) return {};
-  std::vector<Value> last = std::move(free.back());
-  free.pop_back();
+template <class Kind>
+auto take_last(Kind& kind) {
+  ++kind.out;
+  typename decltype(kind.free)::value_type last;
+  if (kind.free.empty()) return last;
+  last = std::move(kind.free.back());
+  kind.free.pop_back();
   return last;
 }
 
@@ -21,14 +23,14 @@ std::vector<Value> take_last(std::vector<std::vector<Value>>& free) {
 
 /// Memory of one kind for so many values. What was for another size goes first.
 template <class Value>
-std::vector<Value> PixelMemory::take(std::vector<std::vector<Value>> Kept::*kind, std::size_t count) {
+std::vector<Value> PixelMemory::take(Kind<Value> Kept::*kind, std::size_t count) {
   Kept others;  // goes after the lock
   std::vector<Value> values;
   {
     const std::lock_guard lock(mutex_);
-    if (count_ != count) std::swap(others, free_);
+    if (count_ != count) std::swap(others, kept_);
     count_ = count;
-    values = take_last(free_.*kind);
+    values = take_last(kept_.*kind);
   }
   others = {};
   resize_for_picture(values, count);
@@ -40,18 +42,20 @@ std::vector<std::uint16_t> PixelMemory::take_halves(std::size_t count) { return 
 
 std::vector<std::uint8_t> PixelMemory::take_codes() {
   const std::lock_guard lock(mutex_);
-  return take_last(free_.codes);
+  return take_last(kept_.codes);
 }
 
 void PixelMemory::give(Picture&& picture) {
   Picture done = std::move(picture);  // all of it goes, whoever holds what is left
   const std::lock_guard lock(mutex_);
-  const auto keep = [this](auto& free, auto& values) {
-    if (!values.empty() && values.size() == count_) free.push_back(std::move(values));
+  const auto keep = [this](auto& kind, auto& values) {
+    if (values.size() != count_ || kind.out == 0) return;
+    --kind.out;
+    kind.free.push_back(std::move(values));
   };
-  keep(free_.pixels, done.color.pixels);
-  keep(free_.halves, done.halves);
-  keep(free_.codes, done.unorm8);
+  keep(kept_.pixels, done.color.pixels);
+  keep(kept_.halves, done.halves);
+  keep(kept_.codes, done.unorm8);
 }
 
 WorkMemory::Block WorkMemory::take(std::size_t size) {

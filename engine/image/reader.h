@@ -35,17 +35,22 @@ class PixelMemory {
   void give(Picture&& picture);
 
  private:
+  template <class Value>
+  struct Kind {
+    std::vector<std::vector<Value>> free;
+    std::size_t out = 0;  ///< taken and not given back: no more are kept, as pictures also bring memory of their own
+  };
   struct Kept {
-    std::vector<std::vector<float>> pixels;
-    std::vector<std::vector<std::uint8_t>> codes;
-    std::vector<std::vector<std::uint16_t>> halves;
+    Kind<float> pixels;
+    Kind<std::uint8_t> codes;
+    Kind<std::uint16_t> halves;
   };
   template <class Value>
-  std::vector<Value> take(std::vector<std::vector<Value>> Kept::*kind, std::size_t count);
+  std::vector<Value> take(Kind<Value> Kept::*kind, std::size_t count);
 
   std::mutex mutex_;
   std::size_t count_ = 0;  ///< that was asked for last
-  Kept free_;
+  Kept kept_;
 };
 
 /// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.

@@ -5,6 +5,7 @@
 #include <future>
 #include <set>
 
+#include "core/exception.h"
 #include "core/stopwatch.h"
 #include "exec/cpu/warm_up.h"
 #include "image/encode.h"
@@ -71,6 +72,7 @@ struct Session::State {
   Result<void> use(OpenedDevice opened);
   void warm_up(const Program& program);
   Result<void> submit(Picture& picture, FrameRequest request);
+  Result<void> begin(const Picture& picture, Frame& frame, FrameRequest request);
 };
 
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -171,27 +173,34 @@ Result<void> Session::submit(Picture picture, FrameRequest request) {
   return state_->submit(picture, std::move(request));
 }
 
-/// Takes the picture; on errors it stays.
+/// Takes the picture; on errors it stays. From `submit` of the renderer on its pixels are read, whatever is thrown.
 Result<void> Session::State::submit(Picture& picture, FrameRequest request) {
-  Frame frame{.picture = {}, .encoding = request.encoding, .region = request.region, .skipped = {}};
   for (const CryptomatteObject& object : request.build->depends.objects)
     if (looked_for.insert(object.layer + "/" + object.name).second) warn_if_absent(object, picture, *diagnostics);
-  AFTERGLOW_TRY(RenderRequest render, stack->request(std::move(request)));
-  frame.runs = render.work.runs();
-  if (frame.runs) {
-    frame.codes = render.work.unorm8;
-    render.inputs = picture_inputs(picture, render.work.graph);
-    render.timing = options.timing;
-    AFTERGLOW_CHECK(renderer->submit(std::move(render)));
-  } else {
-    AFTERGLOW_CHECK(renderer->wait());
-    AFTERGLOW_CHECK(stack->programs()->prepare(std::move(render.work), stack->shaders()));
+  Frame& frame =
+      frames.emplace_back(Frame{.picture = {}, .encoding = request.encoding, .region = request.region, .skipped = {}});
+  auto begun = without_exceptions([&] { return begin(picture, frame, std::move(request)); });
+  if (!begun) {
+    frames.pop_back();
+    return begun;
   }
-  frame.skipped = stack->skipped();
   if (frame.runs) picture.content.erase("source");
   frame.picture = std::move(picture);
-  frames.push_back(std::move(frame));
+  frame.skipped = stack->skipped();
   return {};
+}
+
+Result<void> Session::State::begin(const Picture& picture, Frame& frame, FrameRequest request) {
+  AFTERGLOW_TRY(RenderRequest render, stack->request(std::move(request)));
+  frame.runs = render.work.runs();
+  if (!frame.runs) {
+    AFTERGLOW_CHECK(renderer->wait());
+    return stack->programs()->prepare(std::move(render.work), stack->shaders());
+  }
+  frame.codes = render.work.unorm8;
+  render.inputs = picture_inputs(picture, render.work.graph);
+  render.timing = options.timing;
+  return renderer->submit(std::move(render));
 }
 
 Result<void> Session::collect(Picture& picture) {

@@ -76,7 +76,8 @@ class Session {
   int frames() const;
   int in_flight() const;
   /// The first half of `process`, which goes on while the device works. A frame that nothing runs for is in flight like
-  /// any other. Errors: as of `process`; the picture is lost then.
+  /// any other. Errors: as of `process`, some of which `collect` tells where several may be in flight; the picture is
+  /// lost then.
   Result<void> submit(Picture picture, FrameRequest request);
   /// The second half, of the oldest frame that is in flight; `report` is of it then. `picture` gets what was submitted,
   /// as `process` leaves it, also where it fails.

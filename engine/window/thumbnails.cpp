@@ -14,6 +14,7 @@
 
 #include "core/exception.h"
 #include "core/file.h"
+#include "core/parallel.h"
 #include "edit/stack_edit.h"
 #include "image/scale.h"
 #include "image/srgb.h"
@@ -181,6 +182,7 @@ void Thumbnails::State::make_all(std::unique_lock<std::mutex>& lock) {
 void Thumbnails::State::run() {
   // A priority that cannot be lowered is no error.
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+  loop_alone();
   std::unique_lock lock(mutex);
   while (!ends) {
     if (next() && !rests) make_all(lock);

@@ -100,7 +100,7 @@ TEST_F(Hostile, AShaderThatNeverEndsIsToldAndEnded) {
   make_exr("b.exr");
   fs::create_directory(path("graded"));
   const Outcome outcome = run({"run", "look.lua", "a.exr", "b.exr", "-o", "graded/"}, forced);
-  EXPECT_EQ(outcome.exit_code, kScript) << "with two frames in flight";
+  EXPECT_EQ(outcome.exit_code, kScript) << "with frames in flight";
   EXPECT_THAT(outcome.err, HasSubstr(told));
 }
 

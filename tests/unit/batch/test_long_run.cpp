@@ -13,6 +13,7 @@
 #include "batch/batch_run.h"
 #include "batch/schedule.h"
 #include "batch/watch_run.h"
+#include "image/reader.h"
 #include "image/writer.h"
 #include "temporary_folder.h"
 
@@ -104,6 +105,21 @@ TEST_F(LongRun, NothingIsKeptOfAFrameThatIsDone) {
   constexpr long long kMost =
       32 * (kFrames - kSome - kFirst);  // a note of what each was made of would be three times as much
   EXPECT_LT(after, before + kMost);
+}
+
+/// Pictures bring memory that was not taken from there: floats of one that came as halves.
+TEST(PixelMemoryKeeps, NoMoreThanWasTakenFromIt) {
+  PixelMemory memory;
+  constexpr std::size_t kCount = 4 * 64 * 64;
+  long long after_two = 0;
+  for (int i = 0; i < 20; ++i) {
+    Picture picture;
+    picture.halves = memory.take_halves(kCount);
+    picture.color.pixels.assign(kCount, 1.0f);
+    memory.give(std::move(picture));
+    if (i == 1) after_two = live_bytes;
+  }
+  EXPECT_EQ(live_bytes, after_two);
 }
 
 /// Of frames that look back to all before them; they need not be there.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -31,6 +32,33 @@ TEST(ParallelFor, AnExceptionOfAnyThreadEndsTheLoop) {
   };
   EXPECT_THROW(parallel_for(1'000'000, work), std::runtime_error);
   EXPECT_LT(done, 500'000u);
+}
+
+TEST(ParallelTasks, EachOnceAndTheFirstExceptionIsThrown) {
+  std::vector<std::atomic<int>> visits(100);
+  parallel_tasks(visits.size(), [&](std::size_t i) { ++visits[i]; });
+  for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+  EXPECT_THROW(parallel_tasks(100,
+                              [](std::size_t i) {
+                                if (i == 7) throw std::runtime_error("seven");
+                              }),
+               std::runtime_error);
+}
+
+TEST(ParallelFor, NobodyHelpsAThreadThatLoopsAlone) {
+  std::jthread([] {
+    loop_alone();
+    const auto own = std::this_thread::get_id();
+    parallel_for(1000, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), own); });
+  });
+}
+
+TEST(ParallelFor, HelpersHearNoSignals) {
+  parallel_for(100'000, [caller = std::this_thread::get_id()](std::size_t) {
+    sigset_t blocked;
+    pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+    EXPECT_EQ(sigismember(&blocked, SIGTERM), std::this_thread::get_id() == caller ? 0 : 1);
+  });
 }
 
 TEST(ParallelFor, LoopsInLoopsAndOfManyThreadsEnd) {

@@ -102,6 +102,28 @@ TEST_F(RendererTest, SteadyFramesMakeNothingNew) {
     }
 }
 
+/// What fails while a frame is packed is told of that frame, and once.
+TEST_F(RendererTest, AFrameThatCannotBePackedFailsAlone) {
+  const auto pixels = noise(kSize, 1);
+  const auto programs = cache();
+  const auto ring = renderer(3);
+  for (int round = 0; round < 2; ++round) {
+    RenderRequest bad = request(*programs, graph(2), pixels);
+    bad.inputs["source"].read_row = [](int, float*) { throw std::bad_alloc(); };
+    ASSERT_TRUE(ring->submit(request(*programs, graph(1), pixels)));
+    ASSERT_TRUE(ring->submit(std::move(bad)));
+    ASSERT_TRUE(ring->submit(request(*programs, graph(3), pixels)));
+    HostResult out;
+    ASSERT_TRUE(ring->collect(out));
+    EXPECT_FLOAT_EQ(out.pixels[0], pixels[0]);
+    const auto failed = ring->collect(out);
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().message, "out of memory");
+    ASSERT_TRUE(ring->collect(out));
+    EXPECT_FLOAT_EQ(out.pixels[0], 3 * pixels[0]);
+  }
+}
+
 /// A look at the surroundings, two kernels of which the first keeps its image; what an earlier frame handed on.
 Graph surroundings(Size size, double gain) {
   GraphBuilder builder(size);

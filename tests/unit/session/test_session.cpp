@@ -309,16 +309,16 @@ TEST_F(SessionTest, ALaterFrameMayBeEvaluatedFirst) {
   EXPECT_EQ(session.stack().build()->entries->at(0).settings.at(0).second.text(), "2");
 }
 
-/// Over staging buffers, as on a device with its own memory, with two frames in flight: the same bits.
+/// Over staging buffers, as on a device with its own memory, with three frames in flight: the same bits.
 TEST_F(SessionTest, FramesInFlightAreThoseOfOneAtATime) {
   preset("fx.gain { amount = function(t) return 1 + t.frame end }");
   SessionOptions ahead;
   ahead.direct = false;
-  ahead.frames = 2;
+  ahead.frames = 3;
   auto ring = open(ahead), one = open();
   ASSERT_TRUE(ring && one);
   Session& session = **ring;
-  ASSERT_EQ(session.frames(), 2);
+  ASSERT_EQ(session.frames(), 3);
   const auto make = [](int frame) {
     Picture p = picture(13, 7);
     for (auto& value : p.color.pixels) value += static_cast<float>(frame) / 8;
