@@ -51,7 +51,9 @@ class ItemReader {
     const Runtime& runtime = Runtime::of(lua_);
     const Handle* volume = volumes_ ? to_object<Handle>(lua_, -1, kVolumeKind) : nullptr;
     const std::string place = fmt::format("{}: position {} is", table_.what(), key.position);
-    const std::string allowed = volumes_ ? "fx.NAME { … }, fx.volume { … }" : "fx.NAME { … }, a stack, a list of them";
+    const std::string allowed = volumes_
+                                    ? "fx.NAME { … }, fx.group { … }, fx.mix { … }, fx.volume { … }, a list of them"
+                                    : "fx.NAME { … }, a stack, a list of them";
     if (const Handle* entry = to_object<Handle>(lua_, -1, kEntryKind)) {
       entries_.push_back(runtime.entries[static_cast<std::size_t>(entry->index)]);
     } else if (const Handle* group = to_object<Handle>(lua_, -1, kGroupKind)) {
@@ -65,6 +67,10 @@ class ItemReader {
     } else if (lua_istable(lua_, -1) && depth < kMaxDepth) {
       const TableReader list(lua_, -1, table_.what());
       read(list, at, depth + 1);
+    } else if (to_object<Handle>(lua_, -1, kStackKind)) {
+      table_.fail(failure(place + " a stack, which goes into fx.group { … } here", at, allowed));
+    } else if (to_object<Handle>(lua_, -1, kEffectKind)) {
+      table_.fail(failure(place + " the effect itself, which belongs into the file effects/NAME.lua", at, allowed));
     } else if (lua_iscfunction(lua_, -1)) {
       table_.fail(failure(place + " an effect without settings", at, allowed));
     } else {
@@ -78,6 +84,17 @@ class ItemReader {
   void add_stack(const DeclaredStack& stack, const KeyPath& at) {
     if (!stack.volumes.empty())
       table_.fail(failure(fmt::format("{}: a look with volumes cannot stand in a group or a mix", table_.what()), at));
+    for (const auto& [key, given] : {std::pair{"input_space", !stack.input_space.empty()},
+                                     {"reference_height", stack.reference_height.has_value()}})
+      if (given) {
+        Error place;
+        const Sandbox& box = *Runtime::of(lua_).box;
+        box.locate(place, box.caller(lua_));
+        const std::string told =
+            fmt::format("{}:{}: {}: the '{}' of the look in it does not count; that of the outer stack does",
+                        place.file, place.line, table_.what(), key);
+        Runtime::of(lua_).box->diagnostics->warn_once(told, told);
+      }
     for (DeclaredEntry entry : stack.entries) {
       entry.name.reset();  // names are given anew: the same look may stand here twice
       entries_.push_back(std::move(entry));

@@ -7,11 +7,32 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "script/read_only.h"
 
 namespace afterglow::script {
 namespace {
 
 constexpr std::size_t kMaxKeys = 4096;  // in one table
+
+/// fx:stack { … } hands the library, or fx.mask, over as the table.
+bool is_called_with_colon(lua_State* lua, int index) {
+  push_real(lua, index);
+  const bool view = !lua_rawequal(lua, -1, index);
+  lua_pushliteral(lua, "stack");
+  const bool library = view && lua_rawget(lua, -2) == LUA_TFUNCTION;
+  lua_pop(lua, 2);
+  return library || (view && lua_istable(lua, index + 1));
+}
+
+/// The table is the call's last argument.
+void check_arguments(lua_State* lua, int index, const std::string& what) {
+  const std::string call = what.substr(what.find_last_of(' ') + 1);
+  if (is_called_with_colon(lua, index))
+    throw failure(fmt::format("{} is called with a colon", call), {}, call + " { … }, with a point");
+  if (lua_gettop(lua) > index)
+    throw failure(fmt::format("{} takes one table; behind it stands {}", what, read_value(lua, index + 1).shown()), {},
+                  call + " { … }");
+}
 
 }  // namespace
 
@@ -21,6 +42,7 @@ TableReader::TableReader(lua_State* lua, int index, std::string what)
   if (!lua_istable(lua, index_))
     throw failure(fmt::format("{} takes a table, not {}", what_, read_value(lua, index_).shown()), {},
                   what_.substr(what_.find_last_of(' ') + 1) + " { … }");
+  if (index > 0) check_arguments(lua, index, what_);
   read_keys();
 }
 

@@ -57,6 +57,16 @@ TEST_F(Composition, AGroupStandsTogetherWhereItsFirstEffectWould) {
   EXPECT_THAT(order("fx.b {}, fx.group { fx.c {} }"), ElementsAre("b", "group", ">c"));
 }
 
+TEST_F(Composition, WhatALookInAGroupSaysOfPicturesIsWarnedAbout) {
+  EXPECT_THAT(order("fx.group { fx.stack { reference_height = 540, input_space = \"logc3\", fx.a {} } }"),
+              ElementsAre("group", ">a"));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("fx.group: the 'input_space' of the look in it does not count"),
+                                          HasSubstr("'reference_height'")));
+  scene.warnings.clear();
+  EXPECT_THAT(order("fx.group { fx.stack { name = \"x\", fx.a {} } }"), ElementsAre("group", ">a"));
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
 TEST_F(Composition, PassesOfMasksAndBlendsFollowThoseOfTheEffect) {
   EXPECT_THAT(passes("fx.a { }"), ElementsAre("a.pixel"));
   EXPECT_THAT(passes("fx.a { opacity = 0.5 }"), ElementsAre("a.pixel", "a.blend"));

@@ -152,10 +152,22 @@ TEST_F(SettingMessages, Stacks) {
             "reference_height, requires; did you mean 'name'?");
   EXPECT_EQ(error("fx.glow {},\n5"),
             "preset.lua:4: error: fx.stack: position 2 is 5, not an effect or a volume; allowed: fx.NAME { … }, "
-            "fx.volume { … }");
+            "fx.group { … }, fx.mix { … }, fx.volume { … }, a list of them");
+  EXPECT_EQ(error("fx.stack { fx.glow {} }"),
+            "preset.lua:3: error: fx.stack: position 1 is a stack, which goes into fx.group { … } here; allowed: "
+            "fx.NAME { … }, "
+            "fx.group { … }, fx.mix { … }, fx.volume { … }, a list of them");
+  EXPECT_EQ(error("fx:glow { knee = 3 }"),
+            "preset.lua:3: error: fx.glow is called with a colon; allowed: fx.glow { … }, with a point");
+  EXPECT_EQ(error("fx:glow()"),
+            "preset.lua:3: error: fx.glow is called with a colon; allowed: fx.glow { … }, with a point");
+  EXPECT_EQ(error("fx.mask:luma { from = 3 }"),
+            "preset.lua:3: error: fx.mask.luma is called with a colon; allowed: fx.mask.luma { … }, with a point");
+  EXPECT_EQ(error("fx.glow({}, { knee = 3 })"),
+            "preset.lua:3: error: fx.glow takes one table; behind it stands a table; allowed: fx.glow { … }");
   EXPECT_EQ(error("fx.glow"),
             "preset.lua:3: error: fx.stack: position 1 is an effect without settings; allowed: fx.NAME { … }, "
-            "fx.volume { … }");
+            "fx.group { … }, fx.mix { … }, fx.volume { … }, a list of them");
   EXPECT_EQ(error("fx.glow { name = \"a\" },\nfx.glow { name = \"a\" }"),
             "preset.lua:4: error: fx.stack: two entries are named 'a'");
   EXPECT_EQ(error("max_error = -1"), "preset.lua:3: error: fx.stack: max_error = -1 is out of range; allowed: > 0");

@@ -246,10 +246,9 @@ TEST_F(Volumes, Messages) {
             "preset.lua:6: error: fx.volume: blend_distance = -1 is out of range; allowed: 0…1e+30");
   EXPECT_EQ(volume("settings = {},\n snap_at = 1.5"),
             "preset.lua:6: error: fx.volume: snap_at = 1.5 is out of range; allowed: 0…1");
-  EXPECT_EQ(
-      error("fx.volume"),
-      "preset.lua:4: error: fx.stack: position 2 is an effect without settings; allowed: fx.NAME { … }, fx.volume { "
-      "… }");
+  EXPECT_EQ(error("fx.volume"),
+            "preset.lua:4: error: fx.stack: position 2 is an effect without settings; allowed: fx.NAME { … }, "
+            "fx.group { … }, fx.mix { … }, fx.volume { … }, a list of them");
 }
 
 // ---- random stacks
