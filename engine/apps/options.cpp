@@ -105,14 +105,19 @@ void LayerArguments::add(CLI::App& command) {
       ->group(group);
 }
 
-Result<PresetOptions> PresetArguments::options() const {
-  PresetOptions options;
-  options.paths.assign(paths.begin(), paths.end());
+Result<void> PresetArguments::check_paths() const {
   for (const auto& path : paths) {
     std::error_code ec;
     if (!std::filesystem::exists(path, ec))
       return Error{ErrorKind::usage, fmt::format("--path '{}': there is no such folder or zip", path)};
   }
+  return {};
+}
+
+Result<PresetOptions> PresetArguments::options() const {
+  PresetOptions options;
+  options.paths.assign(paths.begin(), paths.end());
+  AFTERGLOW_CHECK(check_paths());
   for (const auto& text : values) {
     AFTERGLOW_TRY(ArgumentValue parsed, parse_argument(text));
     options.arguments.push_back(std::move(parsed));

@@ -44,6 +44,7 @@ struct PresetArguments {
   void add(CLI::App& command);
   void add_overrides(CLI::App& command);  ///< --set alone
   void add_paths(CLI::App& command);      ///< --path alone
+  Result<void> check_paths() const;       ///< Errors: usage (--path)
   Result<PresetOptions> options() const;
   /// The file that PRESET means: see find_preset_file. Errors: script.
   Result<std::filesystem::path> preset_file() const;

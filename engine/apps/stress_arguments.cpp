@@ -58,6 +58,7 @@ void StressArguments::add(CLI::App& app) {
 }
 
 Result<stress::StressRequest> StressArguments::request(const std::string& name) const {
+  AFTERGLOW_CHECK(preset.check_paths());
   stress::StressRequest out{.presets = presets,
                             .effects = effects,
                             .paths = {preset.paths.begin(), preset.paths.end()},

@@ -53,7 +53,9 @@ std::optional<Size> read_size(TableReader& table, lua_State* lua) {
   const auto whole = [](double v) { return v == std::floor(v) && std::abs(v) <= kFar; };
   if (value.kind != Value::Kind::list || value.count != 2 || !whole(value.list[0]) || !whole(value.list[1])) {
     table.fail(failure(fmt::format("{}: size = {} is no size", table.what(), value.shown()), {"size"},
-                       "an image, {width, height} in whole pixels"));
+                       value.kind == Value::Kind::number
+                           ? "an image, {width, height} in whole pixels; a uniform takes another name"
+                           : "an image, {width, height} in whole pixels"));
     return {};
   }
   return Size{static_cast<int>(value.list[0]), static_cast<int>(value.list[1])};

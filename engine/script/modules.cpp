@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <system_error>
 
 #include "core/ascii.h"
@@ -288,6 +289,19 @@ std::vector<std::string> effect_names(const SearchPath& path, ScriptKind kind) {
   return {names.begin(), names.end()};
 }
 
+namespace {
+
+/// What other languages call the library's types of settings, and masks, which are not written as effects are.
+std::string elsewhere(const Runtime& runtime, const std::string& name) {
+  static const std::map<std::string, std::string> kTypes{{"boolean", "bool"}, {"colour", "color"}, {"integer", "int"},
+                                                         {"number", "float"}, {"string", "text"},  {"vec4", "color"}};
+  if (const auto found = kTypes.find(name); found != kTypes.end()) return found->second;
+  const auto masks = effect_names(runtime.path, ScriptKind::mask);
+  return std::ranges::find(masks, name) == masks.end() ? "" : "mask." + name;
+}
+
+}  // namespace
+
 int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
   Runtime& runtime = Runtime::of(lua);
   const std::string folder = folder_of(kind), what = kind == ScriptKind::mask ? "mask" : "effect";
@@ -308,7 +322,8 @@ int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
     const auto effects = effect_names(runtime.path, kind);
     auto names = kind == ScriptKind::effect ? library_names() : std::vector<std::string>();
     names.insert(names.end(), effects.begin(), effects.end());
-    const std::string nearest = nearest_name(name, names);
+    std::string nearest = kind == ScriptKind::effect ? elsewhere(runtime, name) : "";
+    if (nearest.empty()) nearest = nearest_name(name, names);
     const bool of_effect = std::ranges::find(effects, nearest) != effects.end();
     throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(of_effect ? effects : names),
                   nearest);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/pack.h"
 #include "core/text.h"
 #include "script/injection.h"
 #include "script/mask.h"
@@ -109,6 +110,13 @@ Result<SettingValue> parse_value_of(const std::string& text, const SettingSchema
       if (auto file = named_file(text, schema)) return *file;
     value.text = value.kind == Value::Kind::text ? value.text : trim(text);
     value.kind = Value::Kind::text;
+    if (any_file && !value.text.empty() && !is_safe_entry(value.text, 8)) {
+      const std::filesystem::path file(value.text);
+      std::error_code ec;
+      if (!std::filesystem::is_regular_file(file, ec))
+        return Error{ErrorKind::usage, fmt::format("{} = {}: there is no such file", full_name, value.shown())};
+      value.text = file.filename().string();  // it is its kind that is wrong
+    }
   }
   auto result = check_setting(full_name, schema, value);
   if (result) return result;

@@ -7,6 +7,7 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <mutex>
 #include <new>
@@ -63,6 +64,21 @@ std::string advised(std::string message, std::string_view token) {
   return signature.empty() ? message : message + "; it is " + signature;
 }
 
+/// A word of GLSL that stands where a name should ("vec4 sample = …"), as its parser calls it; else empty.
+std::string word_for_a_name(const std::string& message) {
+  static constexpr std::string_view kWords[] = {
+      "BUFFER",   "CENTROID", "COHERENT", "FLAT",   "INVARIANT", "LAYOUT",     "NOPERSPECTIVE", "PATCH",    "PRECISE",
+      "READONLY", "RESTRICT", "SAMPLE",   "SHARED", "SMOOTH",    "SUBROUTINE", "VOLATILE",      "WRITEONLY"};
+  static constexpr std::string_view kBefore = "unexpected ";
+  const auto begin = message.find(kBefore);
+  if (begin == std::string::npos) return "";
+  const auto end = message.find(',', begin);
+  std::string word = message.substr(begin + kBefore.size(), end - begin - kBefore.size());
+  if (std::ranges::find(kWords, word) == std::end(kWords)) return "";
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
 /// "ERROR: FILE:LINE: 'token' : message" with FILE a number.
 std::optional<LogLine> parse_line(std::string_view text) {
   static constexpr std::string_view kPrefix = "ERROR: ";
@@ -81,7 +97,9 @@ std::optional<LogLine> parse_line(std::string_view text) {
   std::string message = trim(original_names(text));
   if (message.starts_with("'' : ")) message.erase(0, 5);
   if (const auto colon = message.find("' : "); colon != std::string::npos) message.replace(colon, 4, "': ");
-  if (message.find("expecting COMMA or SEMICOLON") != std::string::npos)
+  if (const std::string word = word_for_a_name(message); !word.empty())
+    message = fmt::format("'{}' is a word of GLSL; choose another name", word);
+  else if (message.find("expecting COMMA or SEMICOLON") != std::string::npos)
     message = "a ';' is missing before this: " + trim(message);
   out.message = shortened(trim(message));
   if (out.message.ends_with('.')) out.message.pop_back();  // "'half': Reserved word."

@@ -243,7 +243,7 @@ class ShaderScanner {
         AFTERGLOW_CHECK(add_param({std::string(name.text), *param, false, 0, name.line}, name));
       }
     } while (token().is(","));
-    if (!token().is(";")) return fail(line(), "';' is missing after the uniform");
+    if (!token().is(";")) return fail(*code_[at_ - 1], "';' is missing after the uniform");
     ++at_;
     out_.edits.push_back({code_[begin_]->offset, code_[at_ - 1]->end()});
     return {};

@@ -33,8 +33,20 @@ Bytes random_bytes(std::size_t count) {
   return bytes;
 }
 
+/// With room to work in.
+class Unzip {
+ public:
+  bool run(std::span<const std::uint8_t> packed, Bytes& out) {
+    Bytes apart(out.size());
+    return unzip_.run(packed, out, apart);
+  }
+
+ private:
+  ExrUnzip unzip_;
+};
+
 TEST(ExrUnzip, GivesBackChunksOfEveryLength) {
-  ExrUnzip unzip;
+  Unzip unzip;
   for (const std::size_t count : {1, 2, 3, 15, 16, 17, 18, 31, 33, 34, 1000, 4097, 100001}) {
     const Bytes bytes = random_bytes(count);
     Bytes out(count);
@@ -44,7 +56,7 @@ TEST(ExrUnzip, GivesBackChunksOfEveryLength) {
 }
 
 TEST(ExrUnzip, RefusesOtherLengthsAndDamage) {
-  ExrUnzip unzip;
+  Unzip unzip;
   const Bytes bytes = random_bytes(500);
   const Bytes whole = packed(bytes);
   Bytes longer(501), shorter(499), out(500);
@@ -59,7 +71,7 @@ TEST(ExrUnzip, RefusesOtherLengthsAndDamage) {
 }
 
 TEST(ExrZip, IsUnpackedToTheSameBytes) {
-  ExrUnzip unzip;
+  Unzip unzip;
   for (const int level : {1, 4, 9}) {
     ExrZip zip(level);
     for (const std::size_t count : {1, 2, 3, 15, 16, 17, 33, 1000, 4097, 100001}) {

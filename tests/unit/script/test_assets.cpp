@@ -97,7 +97,7 @@ TEST_F(Assets, TheCommandLineMayNameAnyFile) {
   scene.options.overrides = {{"tint", "table", outside.string()}};
   EXPECT_EQ(found(), outside.string());
   fs::remove(outside);
-  EXPECT_THAT(found(), HasSubstr("is not a name inside"));
+  EXPECT_THAT(found(), HasSubstr("there is no such file"));
 }
 
 TEST_F(Assets, FilesAreKnownOnceBuilt) {

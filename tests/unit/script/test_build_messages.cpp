@@ -137,7 +137,9 @@ TEST_F(BuildMessages, Sizes) {
             call + "size = {4.5, 4} is no size; allowed: an image, {width, height} in whole pixels");
   EXPECT_EQ(lone("{ 1/0, 4 }"),
             call + "size = {inf, 4} is no size; allowed: an image, {width, height} in whole pixels");
-  EXPECT_EQ(lone("7"), call + "size = 7 is no size; allowed: an image, {width, height} in whole pixels");
+  EXPECT_EQ(
+      lone("7"),
+      call + "size = 7 is no size; allowed: an image, {width, height} in whole pixels; a uniform takes another name");
   EXPECT_EQ(error("local half = g:filter { source = source, size = { 32, 16 }, filter = {} }\n"
                   "return g:pass { shader = \"gain\", source = source, gain = 1,\n tint = { 1, 1, 1 }, steps = 1, on = "
                   "true,\n high = half }"),

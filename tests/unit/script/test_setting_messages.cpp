@@ -49,6 +49,10 @@ TEST_F(SettingMessages, UnknownEffectNamesTheNearest) {
   EXPECT_EQ(message.substr(0, message.find(';')), "preset.lua:4: error: unknown effect 'glo'");
   EXPECT_EQ(message.substr(message.rfind(';')), "; did you mean 'glow'?");
   EXPECT_NE(message.find("allowed: "), std::string::npos);
+  for (const auto& [written, meant] : {std::pair{"string", "text"}, {"number", "float"}, {"luma", "mask.luma"}}) {
+    const std::string other = error(std::string("fx.") + written + " { }");
+    EXPECT_EQ(other.substr(other.rfind(';')), std::string("; did you mean '") + meant + "'?");
+  }
 }
 
 TEST_F(SettingMessages, OutOfRange) {

@@ -113,6 +113,8 @@ TEST(Usable, WhatBeginnersWriteIsAnsweredWithWhatToWrite) {
               HasSubstr("x.glsl:4: error: a uniform cannot be written to; copy it into a variable"));
   EXPECT_THAT(said_of("vec4 apply(vec4 c) {\n  return c * 2.0\n}\n"),
               AllOf(HasSubstr("x.glsl:3: error: a ';' is missing before this"), testing::Not(HasSubstr("VEC4"))));
+  EXPECT_THAT(said_of("vec4 apply(vec4 c) {\n  vec4 sample = c;\n  return sample; }\n"),
+              HasSubstr("x.glsl:2: error: 'sample' is a word of GLSL; choose another name"));
   EXPECT_THAT(said_of("vec4 apply(vec4 c) { return c; }\nfloat f(float x);\nfloat g(float x) { return x; }\n"), "ok");
   EXPECT_THAT(
       said_of("float g(float x) { return x; }\nfloat f(float x);\nvec4 apply(vec4 c) { return vec4(f(c.r)); }\n"),
