@@ -28,7 +28,11 @@ std::vector<Value> PixelMemory::take(Kind<Value> Kept::*kind, std::size_t count)
   std::vector<Value> values;
   {
     const std::lock_guard lock(mutex_);
-    if (count_ != count) std::swap(others, kept_);
+    if (count_ != count) {
+      std::swap(others.pixels.free, kept_.pixels.free);
+      std::swap(others.codes.free, kept_.codes.free);
+      std::swap(others.halves.free, kept_.halves.free);
+    }
     count_ = count;
     values = take_last(kept_.*kind);
   }
@@ -49,9 +53,9 @@ void PixelMemory::give(Picture&& picture) {
   Picture done = std::move(picture);  // all of it goes, whoever holds what is left
   const std::lock_guard lock(mutex_);
   const auto keep = [this](auto& kind, auto& values) {
-    if (values.size() != count_ || kind.out == 0) return;
+    if (values.empty() || kind.out == 0) return;
     --kind.out;
-    kind.free.push_back(std::move(values));
+    if (values.size() == count_) kind.free.push_back(std::move(values));
   };
   keep(kept_.pixels, done.color.pixels);
   keep(kept_.halves, done.halves);
