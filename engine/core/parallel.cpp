@@ -48,13 +48,24 @@ struct Loop {
   std::exception_ptr failure{};  ///< the first
 };
 
+/// What each of a loop's threads does; `mutex` is for its failure.
+void work_on(Loop& loop, std::mutex& mutex) {
+  try {
+    for (std::size_t i = loop.next++; i < loop.count; i = loop.next++) loop.work(i);
+  } catch (...) {
+    loop.next = loop.count;
+    const std::lock_guard lock(mutex);
+    if (!loop.failure) loop.failure = std::current_exception();
+  }
+}
+
 /// Threads that wait for loops to help with; as many as the machine has processors beside the caller's, made when they
 /// are first wanted. A caller never waits for one to come.
 class Helpers {
  public:
   void run(Loop& loop) {
     const bool helped = call(loop);
-    work_on(loop);
+    work_on(loop, mutex_);
     if (helped) {
       std::unique_lock lock(mutex_);
       std::erase(loops_, &loop);
@@ -111,21 +122,11 @@ class Helpers {
       ++loop.helping;
       ++busy_;
       lock.unlock();
-      work_on(loop);
+      work_on(loop, mutex_);
       lock.lock();
       std::erase(loops_, &loop);  // there is nothing left to begin
       --busy_;
       if (--loop.helping == 0) left_.notify_all();
-    }
-  }
-
-  void work_on(Loop& loop) {
-    try {
-      for (std::size_t i = loop.next++; i < loop.count; i = loop.next++) loop.work(i);
-    } catch (...) {
-      loop.next = loop.count;
-      const std::lock_guard lock(mutex_);
-      if (!loop.failure) loop.failure = std::current_exception();
     }
   }
 
@@ -173,18 +174,9 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& wor
 }
 
 void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0;
+  Loop loop{work, count, 0};
   std::mutex mutex;
-  std::exception_ptr failure;
-  const auto run = [&] {
-    try {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      next = count;
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
-  };
+  const auto run = [&] { work_on(loop, mutex); };
   {
     std::vector<std::jthread> others;
     const std::size_t threads = std::min(count, processors());
@@ -198,7 +190,7 @@ void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& w
     }
     run();
   }
-  if (failure) std::rethrow_exception(failure);
+  if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
 }  // namespace afterglow

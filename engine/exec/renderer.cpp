@@ -26,7 +26,7 @@ struct Renderer::State {
   std::size_t oldest = 0;  ///< slot of the frame that is collected next
   std::size_t used = 0;    ///< frames in flight, from there on
 
-  void launch();
+  void launch_all();
   Slot& next() { return slots[(oldest + used) % slots.size()]; }
   Result<void> wait();
   /// The program for `look`ed-at frames; notes what it leaves out.
@@ -65,7 +65,7 @@ Result<void> Renderer::State::wait() {
 }
 
 /// Frames that are being packed run the program that their cache holds now.
-void Renderer::State::launch() {
+void Renderer::State::launch_all() {
   for (std::size_t i = 0; i < used; ++i) slots[(oldest + i) % slots.size()].runner->launch();
 }
 
@@ -142,7 +142,7 @@ Result<void> Renderer::submit(RenderRequest request) {
   State& s = *state_;
   if (s.used == s.slots.size()) return Error{ErrorKind::other, "the frame before has to be collected first"};
   if (request.timing != KernelTiming::none) AFTERGLOW_CHECK(s.wait());
-  s.launch();
+  s.launch_all();
   State::Slot& slot = s.next();
   AFTERGLOW_TRY(Program* const program, s.take_program(request, slot));
   slot.runs = program != nullptr;
