@@ -3,9 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "core/text.h"
 #include "script/native.h"
 
 namespace afterglow::script {
@@ -25,17 +29,71 @@ constexpr Names kAbsent[] = {
     {"table", " move ", "a loop does the same"},
 };
 
+constexpr std::size_t kMaxNames = 500;  // that a misspelt name is compared with
+constexpr std::size_t kMaxName = 64;    // bytes of each
+
+void add_name(std::vector<std::string>& names, std::string_view name) {
+  if (names.size() < kMaxNames && name.size() <= kMaxName && !name.starts_with('(')) names.emplace_back(name);
+}
+
+void add_keys(lua_State* lua, int table, std::vector<std::string>& names) {
+  table = lua_absindex(lua, table);
+  std::vector<std::string> keys;
+  lua_pushnil(lua);
+  while (lua_next(lua, table)) {
+    lua_pop(lua, 1);
+    if (lua_type(lua, -1) == LUA_TSTRING) add_name(keys, lua_tostring(lua, -1));
+    if (keys.size() < kMaxNames) continue;
+    lua_pop(lua, 1);
+    break;
+  }
+  std::sort(keys.begin(), keys.end());  // Lua's own order differs from run to run
+  for (const auto& key : keys) add_name(names, key);
+}
+
+// What the function that asks can see: its variables, those of the functions around it, and the globals of its script.
+void add_variables(lua_State* lua, std::vector<std::string>& names) {
+  lua_Debug frame{};
+  if (!lua_getstack(lua, 1, &frame)) return;
+  for (int i = 1; const char* name = lua_getlocal(lua, &frame, i); ++i) {
+    add_name(names, name);
+    lua_pop(lua, 1);
+  }
+  lua_getinfo(lua, "f", &frame);
+  for (int i = 1; const char* name = lua_getupvalue(lua, -1, i); ++i) {
+    if (std::string_view(name) == "_ENV" && lua_istable(lua, -1))
+      add_keys(lua, -1, names);
+    else
+      add_name(names, name);
+    lua_pop(lua, 1);
+  }
+  lua_pop(lua, 1);
+}
+
+// Reads of the table in argument 1 end here for what is not in it.
 int absent_name(lua_State* lua) {
   const std::string library = lua_tostring(lua, lua_upvalueindex(1));
+  if (lua_type(lua, 2) != LUA_TSTRING) {
+    lua_pushnil(lua);
+    return 1;
+  }
   std::size_t size = 0;
-  const char* text = lua_type(lua, 2) == LUA_TSTRING ? lua_tolstring(lua, 2, &size) : "";
+  const char* text = lua_tolstring(lua, 2, &size);
   const std::string name(text, size);
   if (!name.empty() && name.find(' ') == std::string::npos)
     for (const auto& [of, names, why] : kAbsent)
       if (of == library && names.find(" " + name + " ") != std::string_view::npos)
         throw failure(fmt::format("there is no {}{} here: {}", library.empty() ? "" : library + ".", name, why));
-  lua_pushnil(lua);
-  return 1;
+  std::vector<std::string> names;
+  if (library.empty()) add_variables(lua, names);
+  add_keys(lua, 1, names);
+  Sandbox::of(lua).charge(100 * (names.size() + 1));
+  const std::string shown = tidy_message(name, 60);
+  if (library.empty())
+    throw failure(fmt::format("nothing here has the name '{}'", shown), {},
+                  "variables and functions that stand above this line, and those of the library",
+                  nearest_name(name, names));
+  throw failure(fmt::format("there is no {}.{}", library, shown), {}, join(names), nearest_name(name, names));
 }
 
 }  // namespace

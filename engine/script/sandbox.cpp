@@ -194,8 +194,6 @@ int Sandbox::on_error(lua_State* lua) {
     const char* text = lua_tolstring(lua, 1, &size);
     error.message.assign(text, std::min<std::size_t>(size, 2000));
     where = box.take_prefix(error.message);
-    if (error.message.starts_with("attempt to call a nil value (global"))
-      error.allowed = "functions that are defined before, and those of the library, like fx.stack";
   } else if (lua_type(lua, 1) == LUA_TNUMBER) {
     error.message = fmt::format("{}", lua_tonumber(lua, 1));
   } else {

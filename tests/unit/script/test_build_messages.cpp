@@ -270,16 +270,16 @@ TEST_F(BuildMessages, TooManyPasses) {
 
 TEST_F(BuildMessages, ImagesAndGraphsOfAnotherRun) {
   scene.effect("keeper", R"(build = function(g, s, source)
-    if KEPT then return g:pass { shader = "plain", source = KEPT } end
+    if rawget(_ENV, "KEPT") then return g:pass { shader = "plain", source = KEPT } end
     KEPT = source
     return source
   end,)");
   scene.effect("returner", R"(build = function(g, s, source)
-    KEPT = KEPT or source
+    KEPT = rawget(_ENV, "KEPT") or source
     return KEPT
   end,)");
   scene.effect("hoarder", R"(build = function(g, s, source)
-    GRAPH = GRAPH or g
+    GRAPH = rawget(_ENV, "GRAPH") or g
     return GRAPH:pass { shader = "plain", source = source }
   end,)");
   const auto second = [&](const std::string& name) {

@@ -219,7 +219,8 @@ TEST(Escapes, PassesWithoutEnd) {
 
 TEST(Escapes, ThingsOfAnEarlierBuild) {
   Scene scene;
-  scene.effect("glow", "build = function(g, s, source) kept = kept or { g, source } return kept[2] end,");
+  scene.effect("glow",
+               "build = function(g, s, source) kept = rawget(_ENV, \"kept\") or { g, source } return kept[2] end,");
   scene.stack("fx.glow {}");
   auto preset = scene.load();
   ASSERT_TRUE(preset);
@@ -238,7 +239,8 @@ TEST(Escapes, PresetsOfOneProcessShareNothing) {
       "local shared = require \"lib.shared\" shared.n = 5 shared.list[1] = 1 leak = 7 string = nil math = nil\n"
       "assert(not pcall(function() require(\"afterglow\").stack = nil end))\nreturn require(\"afterglow\").stack {}");
   second.preset(
-      "local shared = require \"lib.shared\" assert(shared.n == 0 and #shared.list == 0 and leak == nil and string and "
+      "local shared = require \"lib.shared\" assert(shared.n == 0 and #shared.list == 0 and rawget(_ENV, \"leak\") == "
+      "nil and string and "
       "math)\n"
       "return require(\"afterglow\").stack {}");
   auto one = first.load();
@@ -252,7 +254,7 @@ TEST(Escapes, ModulesOfOneFolderAreNotThoseOfAnother) {
   Scene scene, pack;
   scene.options.paths = {pack.folder()};
   const auto effect = [](Scene& in, const std::string& name, const std::string& check) {
-    in.effect(name, "doc = assert(" + check + ") and name, build = function(g, s, source) return source end");
+    in.effect(name, "doc = assert(" + check + ") and \"Mine.\", build = function(g, s, source) return source end");
   };
   const std::string preset =
       "local own = require \"lib.taps\" assert(own.of == \"preset\" and own == require \"lib.taps\")\n"
