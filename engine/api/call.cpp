@@ -43,6 +43,7 @@ Diagnostics::Sink sink_of(afterglow_message_callback message, void* user) {
   if (!message) return {};
   return [message, user](Severity severity, const std::string& text) {
     const std::string told = utf8_text(for_hosts(text));
+    const HostLocale as_usual;
     message(user, severity == Severity::warning ? AFTERGLOW_WARNING : AFTERGLOW_NOTE, view(told));
   };
 }

@@ -13,6 +13,7 @@
 
 #include "api/afterglow.h"
 #include "core/diagnostics.h"
+#include "core/locale.h"
 #include "core/result.h"
 
 struct afterglow_error {
@@ -32,9 +33,10 @@ afterglow_error* no_memory() noexcept;
 
 Error usage(std::string message);
 
-/// Runs `work`, which returns a Result<void>; what it throws becomes an error.
+/// Runs `work`, which returns a Result<void>; what it throws becomes an error. Numbers in texts are plain meanwhile.
 template <class Work>
 afterglow_error* call(Work work) noexcept {
+  const PlainLocale plain;
   try {
     Result<void> done = work();
     return done ? nullptr : new_error(std::move(done).error());

@@ -114,7 +114,11 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   out.follow = given.follow;
   out.time_kernels = given.time_kernels;
   out.message = sink_of(given.message, given.user);
-  if (given.wake) out.wake = [wake = given.wake, user = given.user] { wake(user); };
+  if (given.wake)
+    out.wake = [wake = given.wake, user = given.user] {
+      const HostLocale as_usual;
+      wake(user);
+    };
   return out;
 }
 

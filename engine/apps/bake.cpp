@@ -90,7 +90,9 @@ std::array<double, 3> tetrahedral(const Cube& cube, const std::array<double, 3>&
   return sum;
 }
 
-std::string cube_text(const Cube& cube, const std::string& title) {
+// The format has no quotation marks inside of its texts.
+std::string cube_text(const Cube& cube, std::string title) {
+  std::ranges::replace(title, '"', '\'');
   std::string out = fmt::format("# {} to sRGB codes of a display\nTITLE \"{}\"\nLUT_3D_SIZE {}\n",
                                 cube.shaper == Shaper::log ? "ACEScct" : "sRGB codes", title, cube.size);
   for (const auto& c : cube.codes) out += fmt::format("{:.7f} {:.7f} {:.7f}\n", c[0], c[1], c[2]);
@@ -186,13 +188,18 @@ Result<BakeError> bake_error(const Cube& cube, int count, const Through& through
   return error;
 }
 
-Result<void> write_cube(const Cube& cube, const std::string& title, const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  if (extension == ".cube") return write_file_atomically(file, cube_text(cube, title));
-  if (extension == ".clf") return write_file_atomically(file, clf_text(cube, title));
-  if (extension == ".png") return write_strip(cube, file);
+Result<std::string> cube_extension(const std::filesystem::path& file) {
+  const std::string extension = lower(file.extension().string());
+  if (extension == ".cube" || extension == ".clf" || extension == ".png") return extension;
   return Error{ErrorKind::usage, fmt::format("'{}' is no format of tables that can be written", extension),
                file.string(), 0, ".cube, .clf, .png"};
+}
+
+Result<void> write_cube(const Cube& cube, const std::string& title, const std::filesystem::path& file) {
+  AFTERGLOW_TRY(const std::string extension, cube_extension(file));
+  if (extension == ".cube") return write_file_atomically(file, cube_text(cube, title));
+  if (extension == ".clf") return write_file_atomically(file, clf_text(cube, title));
+  return write_strip(cube, file);
 }
 
 }  // namespace afterglow

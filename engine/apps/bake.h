@@ -38,6 +38,8 @@ struct BakeError {
 };
 Result<BakeError> bake_error(const Cube& cube, int count, const Through& through);
 
+/// ".cube", ".clf" or ".png", whichever its case. Errors (usage): it is another.
+Result<std::string> cube_extension(const std::filesystem::path& file);
 /// The file by its extension: .cube, .clf, .png (blue by blue beside each other, 16 bits). Errors: usage, io.
 Result<void> write_cube(const Cube& cube, const std::string& title, const std::filesystem::path& file);
 

@@ -23,9 +23,8 @@ struct BakeArguments {
 };
 
 /// The settings of an effect that loads the table; empty where none does.
-std::string use_text(const BakeArguments& a, Shaper shaper) {
-  const std::string extension = std::filesystem::path(a.output).extension().string();
-  if (extension != ".cube" && extension != ".clf") return "";
+std::string use_text(const BakeArguments& a, Shaper shaper, const std::string& extension) {
+  if (extension == ".png") return "";
   const char* input = shaper == Shaper::none ? "srgb" : extension == ".clf" ? "linear" : "acescct";
   const std::string file = SettingValue{.type = SettingType::text, .number = {}, .choice = a.output}.text();
   return fmt::format("in a look: {{ file = {}, input = \"{}\", output = \"srgb\" }}\n", file, input);
@@ -33,6 +32,7 @@ std::string use_text(const BakeArguments& a, Shaper shaper) {
 
 Result<void> run_bake(const BakeArguments& a, Console& console) {
   const Shaper shaper = a.shaper == "log" ? Shaper::log : Shaper::none;
+  AFTERGLOW_TRY(const std::string extension, cube_extension(a.output));
   AFTERGLOW_TRY(const Look look, load_look(a.preset, {}, console));
   if (const auto refused = unbakeable(look); !refused.empty())
     return Error{ErrorKind::script,
@@ -56,7 +56,7 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
     console.warning("the look takes scene light, but the table cuts off what is above 1; --shaper log takes it");
   fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
              shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
-  fmt::print("{}", use_text(a, shaper));
+  fmt::print("{}", use_text(a, shaper, extension));
   return {};
 }
 

@@ -44,15 +44,6 @@ std::string origin_text(const SettingHistory& setting) {
   return setting.kind == "fixed" ? "" : "(" + setting.kind + ")";
 }
 
-/// The first entry that runs behind this one though it is written before it, in the same file; null: none.
-const StackEntry* written_above(const std::vector<StackEntry>& entries, std::size_t place) {
-  const StackEntry& entry = entries[place - 1];
-  for (std::size_t i = place; i < entries.size(); ++i)
-    if (entries[i].file == entry.file && entries[i].depth == entry.depth && entries[i].line < entry.line)
-      return &entries[i];
-  return nullptr;
-}
-
 std::string entry_text(const Look& look, std::size_t place) {
   const StackEntry& entry = (*look.build.entries)[place - 1];
   const EntrySpace& space = look.spaces[place - 1];
@@ -60,9 +51,9 @@ std::string entry_text(const Look& look, std::size_t place) {
                                 entry.name, entry.at, entry.order, space_text(space), composition_text(entry),
                                 entry.required ? "; required" : "", entry.enabled ? "" : "; not enabled");
   if (!space.warning.empty()) out += fmt::format("   warning: {}\n", space.warning);
-  if (const auto* above = written_above(*look.build.entries, place))
-    out +=
-        fmt::format("   note: runs before '{}', which is written above it: `at` and `order` say when\n", above->name);
+  if (!entry.overtakes.empty())
+    out += fmt::format("   note: runs before '{}', which is written above it: `at` and `order` say when\n",
+                       entry.overtakes);
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
   const EntryHistory& history = look.build.explanation->entries[place - 1];

@@ -9,6 +9,7 @@
 #include "apps/options.h"
 #include "apps/output.h"
 #include "apps/text_difference.h"
+#include "core/printable.h"
 #include "edit/write_back.h"
 #include "shader/library.h"
 
@@ -50,6 +51,16 @@ Result<std::vector<PresetEdit>> edits_of(const SetArguments& arguments, const st
   return edits;
 }
 
+/// A file that is not there yet may be made later: that is told, and no error.
+void warn_of_missing_files(const std::vector<PresetEdit>& edits, const SearchPath& path, Console& console) {
+  for (const auto& edit : edits)
+    if (edit.value && edit.value->type == SettingType::file && !edit.value->choice.empty() &&
+        path.find_asset(edit.value->choice).empty())
+      console.diagnostics().warn(
+          fmt::format("{} = \"{}\": there is no such file beside the preset or on the search path", edit.name(),
+                      tidy_message(edit.value->choice, 100)));
+}
+
 Result<void> run_set(const SetArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const auto file, arguments.preset.preset_file());
   AFTERGLOW_TRY(const PresetOptions options, arguments.preset.options());
@@ -63,6 +74,7 @@ Result<void> run_set(const SetArguments& arguments, Console& console) {
     return last;
   }
   for (const auto& note : rewrite.notes) console.diagnostics().warn(note);
+  warn_of_missing_files(edits, search_path_for(file, options.paths), console);
   if (!arguments.dry_run) AFTERGLOW_CHECK(writer.save(rewrite));
   output("{}", difference_text(file.string(), rewrite.before, rewrite.text));
   if (rewrite.text == rewrite.before) console.diagnostics().note("the preset says so already; nothing was written");

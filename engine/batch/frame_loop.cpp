@@ -134,8 +134,12 @@ Result<void> FrameLoop::close(Result<void> result) {
 
 /// Which frame this one follows: the last of its sequence that was made. It was evaluated as if none failed.
 Result<void> FrameLoop::place_in_time(Reading& reading) {
-  if (!options_.histories || reading.refused) return {};
-  if (reading.restart) last_.reset();
+  if (!options_.histories) return {};
+  if (reading.restart) {
+    last_.reset();
+    gaps_.clear();
+  }
+  if (reading.refused) return {};
   reading.request.restart = !last_;
   reading.request.step = last_ ? reading.frame->job.frame - *last_ : 1;
   if (reading.request.step == reading.request.build->context.step) return {};
@@ -144,6 +148,17 @@ Result<void> FrameLoop::place_in_time(Reading& reading) {
   context.restart = reading.request.restart;
   AFTERGLOW_TRY(reading.request.build, session_.evaluate(context));
   return {};
+}
+
+/// A frame that failed is missing in the history of those behind it; one whose output failed is not.
+void FrameLoop::note_gap(const FrameJob& job) {
+  if (options_.histories && job.earlier.of && (!last_ || *last_ < job.frame))
+    gaps_.push_back(job.earlier.of->begin_of(job.frame));
+}
+
+bool FrameLoop::has_gap(const FrameJob& job) const {
+  return std::ranges::any_of(gaps_,
+                             [&](std::size_t place) { return place >= job.earlier.begin && place < job.earlier.end; });
 }
 
 Result<std::shared_ptr<const Build>> FrameLoop::inspect(const FrameJob& job) {
@@ -230,7 +245,8 @@ Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
   auto picture = reading->picture.get();
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
   if (events_.interrupted()) return interruption();
-  if (notes_) frame.job.made_of = notes_->text(reading->inputs, reading->request.build->depends);
+  // What another run would make of the same files is not this.
+  if (notes_ && !has_gap(frame.job)) frame.job.made_of = notes_->text(reading->inputs, reading->request.build->depends);
   frame.size = picture->color.size();
   frame.non_finite.input = picture->non_finite;
   if (const auto begun = begin(*reading, std::move(*picture)); !begun) return failed(*reading, begun.error());
@@ -368,6 +384,7 @@ Result<void> FrameLoop::finish_writing(std::size_t left) {
 /// Notes the failure; returns it when the run ends with it.
 Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   frame.state = FrameRecord::State::failed;
+  note_gap(frame.job);
   if (frame.job.passing) frame.job.movie.reset();
   frame.error = error;
   if (pre_roll && options_.whole_pre_roll) return error;

@@ -57,6 +57,8 @@ class FrameLoop {
   std::size_t ahead() const;
   Result<void> process(std::unique_ptr<Reading> reading);
   Result<void> begin(Reading& reading, Picture picture);
+  void note_gap(const FrameJob& job);
+  bool has_gap(const FrameJob& job) const;
   Result<void> finish_running();
   Result<void> failed(const Reading& reading, Error error);
   SharedSkips share_skips(const std::vector<Skipped>& skips);
@@ -85,6 +87,7 @@ class FrameLoop {
   std::optional<Error> stream_error_;
   Overlap overlap_;
   std::optional<int> last_;        ///< number of the frame that the next one follows
+  std::vector<std::size_t> gaps_;  ///< places of frames of its sequence that are not in its history: they failed
   std::optional<int> begun_;       ///< number of the frame that was evaluated last
   std::deque<SharedSkips> skips_;  ///< of frames so far, the newest first
 };

@@ -30,8 +30,9 @@ class FileSink : public FrameSink {
   }
   Result<void> write(const FrameJob& job, std::size_t, const Picture& picture, const Turn&) override {
     AFTERGLOW_CHECK(make_folder(folder_));
-    AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
-    if (const auto noted = record_made(job); !noted)
+    std::string stamp;
+    AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_, &stamp));
+    if (const auto noted = record_made(job, stamp); !noted)
       diagnostics_.warn_once("notes", fmt::format("{}: {}; --resume will make such frames again", noted.error().file,
                                                   noted.error().message));
     return {};

@@ -2,7 +2,6 @@
 #include "batch/resume.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 
 #include "core/environment.h"
 #include "core/file.h"
+#include "core/file_stamp.h"
 #include "core/temporary.h"
 #include "core/text.h"
 #include "core/version.h"
@@ -25,13 +25,6 @@ constexpr const char* kInPath = "path:";  // before a name that is looked up alo
 
 fs::path record_file(const fs::path& output) {
   return output.parent_path() / ".afterglow" / (output.filename().string() + ".made");
-}
-
-/// Size, and time in nanoseconds; empty: it is not there.
-std::string stamp_of(const fs::path& file) {
-  struct stat status {};
-  if (stat(file.c_str(), &status) != 0) return {};
-  return fmt::format("{} {}.{:09}", status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
 
 /// Of a file among others; zero: it is not there.
@@ -67,7 +60,7 @@ Hash FrameNotes::inputs_of(const FrameJob& job) {
   Hasher hasher;
   bool all = true;
   for (const auto& file : job.sources()) {
-    const std::string stamp = stamp_of(file);
+    const std::string stamp = file_stamp(file);
     all = all && !stamp.empty();
     hasher.add(file.filename().string()).add(stamp);
     if (stamps && place < earlier.of->files.size() && earlier.of->files[place] == file)
@@ -77,7 +70,7 @@ Hash FrameNotes::inputs_of(const FrameJob& job) {
   if (!stamps || earlier.files().empty()) return hasher.finish();
   const auto before = stamps->of(earlier.begin, earlier.end, [&](std::size_t at) {
     const fs::path& file = earlier.of->files[at];
-    return named_stamp(file, stamp_of(file));
+    return named_stamp(file, file_stamp(file));
   });
   return before ? hasher.add(before->hex()).finish() : Hash{};
 }
@@ -105,7 +98,7 @@ bool FrameNotes::is_same(const std::string& line, const FrameJob& job) {
     const Hash now = inputs_of(job);
     return now != Hash{} && now.hex() == *inputs;
   }
-  if (const auto output = behind(line, "output")) return *output == stamp_of(job.output);
+  if (const auto output = behind(line, "output")) return *output == file_stamp(job.output);
   if (const auto file = behind(line, "file")) {
     const std::size_t space = file->find(' ');
     if (space == std::string::npos) return false;
@@ -137,7 +130,7 @@ int remove_leftovers(const FrameRecords& frames) {
   return removed;
 }
 
-Result<void> record_made(const FrameJob& job) {
+Result<void> record_made(const FrameJob& job, const std::string& stamp) {
   if (job.made_of.empty()) return {};
   const fs::path file = record_file(job.output);
   const fs::path folder = job.output.has_parent_path() ? job.output.parent_path() : fs::path(".");
@@ -145,7 +138,7 @@ Result<void> record_made(const FrameJob& job) {
   // Whoever may write the outputs may write their notes.
   if (fs::create_directory(file.parent_path(), ec))
     fs::permissions(file.parent_path(), fs::status(folder, ec).permissions(), ec);
-  return write_file_atomically(file, job.made_of + "output " + stamp_of(job.output) + "\n");
+  return write_file_atomically(file, job.made_of + "output " + stamp + "\n");
 }
 
 }  // namespace afterglow

@@ -56,7 +56,8 @@ class FrameNotes {
 /// Removes what killed runs on this machine have left half-written in the folders of these outputs; returns how many
 /// files.
 int remove_leftovers(const FrameRecords& frames);
-/// Notes what the output was made of, behind it; nothing when FrameJob::made_of is empty. Thread-safe. Errors: io.
-Result<void> record_made(const FrameJob& job);
+/// Notes what the output was made of, behind it; nothing when FrameJob::made_of is empty. `stamp`: of the file that was
+/// written, which another may have replaced since. Thread-safe. Errors: io.
+Result<void> record_made(const FrameJob& job, const std::string& stamp);
 
 }  // namespace afterglow

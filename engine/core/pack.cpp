@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint64_t kSmall = 1u << 20;  // below this, a high ratio harms nobody
 
 struct Entry {
-  std::string name;
+  std::string name;         ///< of the file that it becomes
   std::uint64_t bytes = 0;  ///< unpacked
   std::uint64_t crc = 0;    ///< of that
   unz64_file_pos place{};
@@ -56,6 +56,11 @@ std::string fault_of(const unz_file_info64& info, const std::string& name, const
   return {};
 }
 
+/// What systems add to a zip for themselves.
+bool is_noise(const std::string& name) {
+  return name.starts_with("__MACOSX/") || fs::path(name).filename() == ".DS_Store";
+}
+
 // Everything that the zip says it holds, checked; nothing is unpacked.
 Result<std::vector<Entry>> list_entries(unzFile zip, const fs::path& path, const PackLimits& limits) {
   std::vector<Entry> entries;
@@ -76,12 +81,29 @@ Result<std::vector<Entry>> list_entries(unzFile zip, const fs::path& path, const
     total += entry.bytes;
     if (total > limits.total_bytes)
       return refused(path, fmt::format("it unpacks to more than {} MiB", limits.total_bytes >> 20));
-    if (entry.name.ends_with('/')) continue;
+    if (entry.name.ends_with('/') || is_noise(entry.name)) continue;
     if (unzGetFilePos64(zip, &entry.place) != UNZ_OK) return refused(path, "it is damaged");
     entries.push_back(std::move(entry));
   }
   if (entries.empty()) return refused(path, "it holds no files");
   return entries;
+}
+
+/// A folder that was zipped whole is a pack as its content is: the folder's own name goes, when all lies in it and it
+/// looks like a pack. `stem`: the zip's name without ".zip".
+void drop_folder_around(std::vector<Entry>& entries, const std::string& stem) {
+  static constexpr std::array<std::string_view, 4> kParts{"presets", "effects", "masks", "shaders"};
+  const auto is_part = [&](const std::string& folder) { return std::ranges::find(kParts, folder) != kParts.end(); };
+  const std::string around = entries.front().name.substr(0, entries.front().name.find('/') + 1);
+  const auto lies_in_it = [&](const Entry& entry) { return entry.name.starts_with(around); };
+  if (around.empty() || is_part(around.substr(0, around.size() - 1)) || !std::ranges::all_of(entries, lies_in_it))
+    return;
+  const bool is_pack = std::ranges::any_of(entries, [&](const Entry& entry) {
+    const fs::path inside(entry.name.substr(around.size()));
+    return is_part(inside.begin()->string()) || (around == stem + "/" && inside.extension() == ".lua");
+  });
+  if (!is_pack) return;
+  for (auto& entry : entries) entry.name.erase(0, around.size());
 }
 
 Result<std::string> unpack(unzFile zip, const fs::path& path, const Entry& entry) {
@@ -146,7 +168,8 @@ Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const Pac
   if (!bytes) return Error{ErrorKind::script, bytes.error().message, path.string()};
   const Zip zip = open_zip_bytes(*bytes);
   if (!zip) return refused(path, "it is no zip");
-  AFTERGLOW_TRY(const std::vector<Entry> entries, list_entries(zip.get(), path, limits));
+  AFTERGLOW_TRY(std::vector<Entry> entries, list_entries(zip.get(), path, limits));
+  drop_folder_around(entries, path.stem().string());
 
   // The zip's own name comes last, so that messages about its files read like NAME.zip/effects/….lua.
   const std::string name = path.filename().string();

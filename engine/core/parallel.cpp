@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/locale.h"
+
 namespace afterglow {
 namespace {
 
@@ -25,7 +27,7 @@ std::size_t processors() {
   return known;
 }
 
-/// A thread that hears no signals: those are the host's matter, and its threads'.
+/// A thread that hears no signals: those are the host's matter, and its threads'. Nor does its locale matter.
 template <class Work>
 std::thread quiet_thread(Work work) {
   sigset_t all, before;
@@ -35,7 +37,10 @@ std::thread quiet_thread(Work work) {
     const sigset_t& before;
     ~Restore() { pthread_sigmask(SIG_SETMASK, &before, nullptr); }
   } restore{before};
-  return std::thread(std::move(work));
+  return std::thread([work = std::move(work)] {
+    const PlainLocale plain;
+    work();
+  });
 }
 
 /// A loop on its caller's thread, which others help with.
@@ -183,7 +188,10 @@ void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& w
     others.reserve(threads);
     for (std::size_t i = 1; i < threads; ++i) {
       try {
-        others.emplace_back(run);
+        others.emplace_back([&run] {
+          const PlainLocale plain;
+          run();
+        });
       } catch (const std::system_error&) {
         break;  // no more threads to be had: those that run do the work
       }

@@ -4,12 +4,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 extern char** environ;
@@ -76,6 +76,15 @@ std::string ProcessEnd::text() const {
   return signal ? fmt::format("was ended by signal {}", signal) : fmt::format("ended with exit code {}", code);
 }
 
+void hear_signals(posix_spawnattr_t& attributes, short more_flags) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGPIPE);
+  sigaddset(&signals, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGDEF | more_flags));
+}
+
 Result<ProcessEnd> run_process(const std::vector<std::string>& words, const ProcessOptions& options) {
   const auto failed = [&](int code) {
     return Error{ErrorKind::io, fmt::format("'{}' cannot be started: {}", words.front(), std::strerror(code))};
@@ -88,9 +97,13 @@ Result<ProcessEnd> run_process(const std::vector<std::string>& words, const Proc
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.ends[1], STDOUT_FILENO);
   if (!options.show_errors) posix_spawn_file_actions_adddup2(&actions, err.ends[1], STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  hear_signals(attributes);
   pid_t child = 0;
-  const int problem = posix_spawnp(&child, words.front().c_str(), &actions, nullptr, pointers(arguments).data(),
+  const int problem = posix_spawnp(&child, words.front().c_str(), &actions, &attributes, pointers(arguments).data(),
                                    pointers(variables).data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) return failed(problem);
   out.close_end(1);

@@ -2,6 +2,8 @@
 // Other programs, run with words as they are: no shell reads them.
 #pragma once
 
+#include <spawn.h>
+
 #include <map>
 #include <string>
 #include <vector>
@@ -26,6 +28,10 @@ struct ProcessEnd {
 /// Runs the program `words[0]`, found on PATH where it names no folder, to its end; it reads nothing. Thread-safe.
 /// Errors: io (it cannot be started).
 Result<ProcessEnd> run_process(const std::vector<std::string>& words, const ProcessOptions& options = {});
+
+/// For posix_spawn: the program is to end by SIGPIPE and SIGXFSZ, as programs expect, though this one ignores them.
+/// `more_flags`: others of the attributes.
+void hear_signals(posix_spawnattr_t& attributes, short more_flags = 0);
 
 /// A word as shells read it: plain ones as they are, others in single quotation marks.
 std::string shell_word(const std::string& word);

@@ -37,7 +37,8 @@ bool write_new(const fs::path& path, std::string_view content, const struct stat
 
 }  // namespace
 
-Result<void> replace_file_atomically(const fs::path& path, std::string_view content) {
+Result<void> replace_file_atomically(const fs::path& path, std::string_view content,
+                                     const std::function<Result<void>()>& last_look) {
   const auto failed = [&](int reason) {
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), path.string()};
   };
@@ -49,6 +50,7 @@ Result<void> replace_file_atomically(const fs::path& path, std::string_view cont
     const int reason = errno;
     return failed(reason);
   }
+  if (last_look) AFTERGLOW_CHECK(last_look());
   return temporary.commit();
 }
 

@@ -88,6 +88,7 @@ class PresetWriter {
     std::string before, after;
   };
   Result<void> expect(const std::string& text) const;
+  Result<void> replace(const std::string& before, const std::string& after) const;
 
   std::filesystem::path file_;
   PresetOptions options_;

@@ -2,9 +2,11 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/file_lock.h"
 #include "core/pack.h"
 #include "core/paths.h"
 #include "core/replace_file.h"
+#include "core/temporary.h"
 #include "edit/write_back.h"
 
 namespace afterglow {
@@ -24,6 +26,13 @@ Result<void> PresetWriter::expect(const std::string& text) const {
   return Error{ErrorKind::io, "was changed by something else in the meantime; nothing was written", file_.string()};
 }
 
+// One program at a time looks and writes, and what others save meanwhile is seen up to the very last.
+Result<void> PresetWriter::replace(const std::string& before, const std::string& after) const {
+  const FileLock lock(behind_links(file_).parent_path() / ".");
+  AFTERGLOW_CHECK(expect(before));
+  return replace_file_atomically(file_, after, [&] { return expect(before); });
+}
+
 Result<Rewrite> PresetWriter::plan(const std::vector<PresetEdit>& edits,
                                    const std::optional<WorkingText>& working) const {
   if (!working) {
@@ -41,8 +50,7 @@ Result<void> PresetWriter::save(const Rewrite& rewrite) {
   if (const std::string pack = pack_of(file_, cache_folder()); !pack.empty())
     return Error{ErrorKind::usage, "lies in the pack " + pack + ", and packs are not written: copy or unpack it first",
                  file_.filename().string()};
-  AFTERGLOW_CHECK(expect(rewrite.before));
-  AFTERGLOW_CHECK(replace_file_atomically(file_, rewrite.text));
+  AFTERGLOW_CHECK(replace(rewrite.before, rewrite.text));
   saves_.push_back({rewrite.before, rewrite.text});
   if (saves_.size() > kMostSaves) saves_.erase(saves_.begin());
   return {};
@@ -50,8 +58,7 @@ Result<void> PresetWriter::save(const Rewrite& rewrite) {
 
 Result<void> PresetWriter::undo() {
   if (saves_.empty()) return Error{ErrorKind::io, "nothing was saved that could be taken back", file_.string()};
-  AFTERGLOW_CHECK(expect(saves_.back().after));
-  AFTERGLOW_CHECK(replace_file_atomically(file_, saves_.back().before));
+  AFTERGLOW_CHECK(replace(saves_.back().after, saves_.back().before));
   saves_.pop_back();
   return {};
 }

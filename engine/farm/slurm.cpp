@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "core/file_lock.h"
 #include "core/json_text.h"
 #include "core/parse_number.h"
 #include "core/process.h"
@@ -176,6 +177,9 @@ Result<Submissions> read_submissions(const Job& job) {
   }
 }
 
+/// Of those who change the list of submissions: two at once would lose arrays, which nobody could cancel then.
+std::filesystem::path lock_of(const Job& job) { return job.folder / "slurm.lock"; }
+
 Result<void> write_submissions(const Job& job, const Submissions& submissions) {
   Json json{{"afterglow_slurm", kSlurmVersion}, {"cancelled", submissions.cancelled}, {"arrays", Json::array()}};
   for (const auto& array : submissions.arrays)
@@ -270,6 +274,7 @@ Result<std::size_t> largest_array() {
 
 Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks) {
   AFTERGLOW_TRY(const std::size_t most, largest_array());
+  const FileLock lock(lock_of(job));
   AFTERGLOW_TRY(Submissions all, read_submissions(job));
   const std::size_t before = all.arrays.size();
   std::vector<std::string> live;  // arrays that the joining waits for
@@ -299,6 +304,7 @@ Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks
 }
 
 Result<void> cancel(const Job& job) {
+  const FileLock lock(lock_of(job));  // what is being submitted is submitted first, and known
   AFTERGLOW_TRY(Submissions all, read_submissions(job));
   if (all.arrays.empty())
     return Error{ErrorKind::io, "was not submitted to Slurm; cancel it where it was", job.folder.string()};
@@ -345,8 +351,10 @@ Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissi
     if (!cluster.empty()) words.push_back("--clusters=" + cluster);
     AFTERGLOW_TRY(const std::string text, output_of(words));
     states.merge(states_of_queue(text, submissions));
-    const auto accounted = run_process(
-        {"sacct", "--noheader", "--parsable2", "--allocations", "--format=JobID,State,NodeList", "--jobs=" + ids});
+    std::vector<std::string> asked{
+        "sacct", "--noheader", "--parsable2", "--allocations", "--format=JobID,State,NodeList", "--jobs=" + ids};
+    if (!cluster.empty()) asked.push_back("--clusters=" + cluster);
+    const auto accounted = run_process(asked);
     if (accounted && accounted->code == 0) states.merge(states_of_accounting(accounted->out, submissions));
   }
   return states;

@@ -12,6 +12,7 @@
 
 #include "core/exception.h"
 #include "core/file.h"
+#include "core/file_stamp.h"
 #include "core/file_time.h"
 #include "core/temporary.h"
 #include "core/text.h"
@@ -184,7 +185,7 @@ Result<std::string> picture_bytes(const Picture& picture, const std::string& ext
 }
 
 Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options,
-                           Diagnostics& diagnostics) {
+                           Diagnostics& diagnostics, std::string* stamp) {
   AFTERGLOW_CHECK(check_output(file, options));
   AFTERGLOW_TRY(const OutputFormat* format, output_format(file, options));
   Diagnostics named([&](Severity severity, const std::string& message) {
@@ -200,6 +201,7 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
       return error;
     }
     const FileTime time;
+    if (stamp) *stamp = file_stamp(temporary.path());
     return temporary.commit();
   } catch (const std::exception& error) {
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", exception_text(error)), file.string()};

@@ -69,8 +69,9 @@ struct WriteOptions {
 /// Scene formats (EXR, HDR, PFM) get scene-linear values and, for EXR, both windows; all others get the display window,
 /// clamped and encoded in their space. Alpha is written when the picture has it and the format can; straight where the
 /// format wants it.
+/// `stamp`, when given, gets file_stamp of what was written.
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
-                           Diagnostics& diagnostics);
+                           Diagnostics& diagnostics, std::string* stamp = nullptr);
 
 /// Memory that `write_picture` takes besides a picture of this size, at most. 0 where it is a few rows,
 /// or not known. `facts` may be null.

@@ -197,7 +197,7 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
 Result<bool> Player::State::show_due(double now) {
   const Transport::Due due = transport.due(now);
   want_pictures();
-  const bool compare_missing = second && view.compare == Compare::other && !second_runs;
+  const bool compare_missing = second && view.compare == Compare::other && !second_runs && !shown.failed;
   if (!due.moved && !dirty && !reread && !compare_missing && shown.position == due.position) return false;
   const FootageFrame& frame = footage->frame(due.position);
   const auto read = ahead->find(frame.picture);
@@ -205,6 +205,11 @@ Result<bool> Player::State::show_due(double now) {
     if (transport.playing() && due.moved) ++figures.late;
     // An edit need not wait for the next picture: the one on screen shows it.
     if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, due.tick, false});
+    return false;
+  }
+  // What could not be read is told once, until it is read anew; edits show on the picture that stays.
+  if (read->error && !due.moved && !reread && shown.position == due.position && shown.unreadable) {
+    if (picture && (dirty || compare_missing)) return run(picture, {shown.position, due.tick, false});
     return false;
   }
   const ShownFrame before = shown;

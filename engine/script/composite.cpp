@@ -65,16 +65,16 @@ std::shared_ptr<const EntryMask> shown(const MaskRun& mask) {
   return out;
 }
 
-/// What the mask is everywhere, if that is known; `reason`: why a part of it selects nothing.
-std::optional<double> constant(lua_State* lua, const MaskRun& mask, std::string& reason) {
+/// What the mask is everywhere, if that is known; `none`: why a part of it selects nothing.
+std::optional<double> constant(lua_State* lua, const MaskRun& mask, Inactive& none) {
   if (mask.kind == Kind::number) return clamped(mask.number);
   if (mask.named) {
-    auto why = inactive_reason(lua, *mask.named);
+    auto why = why_inactive(lua, *mask.named);
     if (!why) return {};
-    reason = fmt::format("{}: {}", mask.named->entry.effect, *why);
+    none = {fmt::format("{}: {}", mask.named->entry.effect, why->reason), why->told};
     return 0;
   }
-  const auto a = constant(lua, *mask.a, reason), b = constant(lua, *mask.b, reason);
+  const auto a = constant(lua, *mask.a, none), b = constant(lua, *mask.b, none);
   if (a && b)
     return combined(mask.kind, mask.a->kind == Kind::number ? mask.a->number : *a,
                     mask.b->kind == Kind::number ? mask.b->number : *b);
@@ -85,7 +85,7 @@ std::optional<double> constant(lua_State* lua, const MaskRun& mask, std::string&
 
 void add_inputs(lua_State* lua, const MaskRun& mask, bool optional_too, std::vector<std::string>& names) {
   if (mask.a) add_inputs(lua, *mask.a, optional_too, names), add_inputs(lua, *mask.b, optional_too, names);
-  if (!mask.named || inactive_reason(lua, *mask.named)) return;
+  if (!mask.named || why_inactive(lua, *mask.named)) return;
   std::vector<std::string> inputs = needed_inputs(lua, *mask.named);
   if (optional_too)
     for (auto& name : optional_inputs(lua, *mask.named)) inputs.push_back(std::move(name));
@@ -127,7 +127,7 @@ class MaskBuilder {
 
  private:
   Part named(const EntryRun& run) {
-    if (inactive_reason(lua_, run)) return 0.0;
+    if (why_inactive(lua_, run)) return 0.0;
     std::vector<std::string> inputs = needed_inputs(lua_, run);
     for (auto& input : optional_inputs(lua_, run)) inputs.push_back(std::move(input));
     const bool straight = Runtime::of(lua_).effects[static_cast<std::size_t>(run.effect)].schema.straight;
@@ -233,12 +233,13 @@ bool composition_moves(const EntryRun& run) {
   return moving(run.opacity) || moving(run.blend) || (run.mask && moves(*run.mask));
 }
 
-std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run) {
-  if (run.entry.opacity <= 0) return "opacity is 0";
-  std::string reason;
-  const auto everywhere = run.mask ? constant(lua, *run.mask, reason) : std::nullopt;
+std::optional<Inactive> why_unseen(lua_State* lua, const EntryRun& run) {
+  if (run.entry.opacity <= 0) return Inactive{"opacity is 0"};
+  Inactive none;
+  const auto everywhere = run.mask ? constant(lua, *run.mask, none) : std::nullopt;
   if (!everywhere || *everywhere > 0) return {};
-  return reason.empty() ? "its mask selects nothing" : "its mask selects nothing: " + reason;
+  none.reason = "its mask selects nothing" + (none.reason.empty() ? "" : ": " + none.reason);
+  return none;
 }
 
 void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names) {

@@ -27,7 +27,7 @@ void scale_lengths(lua_State* lua, MaskRun& mask, double length_scale);
 bool composition_moves(const EntryRun& run);
 
 /// Why nothing of the entry's result would be seen; empty when something may be.
-std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run);
+std::optional<Inactive> why_unseen(lua_State* lua, const EntryRun& run);
 
 /// Auxiliary inputs that its masks need, behind `names`; `optional_too`: and those that they can use.
 void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names);

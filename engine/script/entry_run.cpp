@@ -114,18 +114,19 @@ void make_settings(lua_State* lua, EntryRun& run, double length_scale) {
   run.settings_ref = luaL_ref(lua, LUA_REGISTRYINDEX);
 }
 
-std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run, bool* told) {
+std::optional<Inactive> why_inactive(lua_State* lua, const EntryRun& run) {
   const Effect& effect = effect_of(lua, run);
   if (!effect.active.set()) return {};
   call_with_settings(lua, effect.active, run, 3);
   const Value active = read_value(lua, -3), reason = read_value(lua, -2);
-  if (told) *told = lua_toboolean(lua, -1) != 0;
+  const bool told = lua_toboolean(lua, -1) != 0;
   lua_pop(lua, 3);
   if (active.kind != Value::Kind::boolean)
     fail_in(lua, effect.active,
             fmt::format("active of effect '{}' returned {}, not true or false", effect.schema.name, active.shown()));
   if (active.number != 0) return {};
-  return reason.kind == Value::Kind::text ? tidy_message(reason.text, 200) : "its settings leave the picture as it is";
+  const bool given = reason.kind == Value::Kind::text;
+  return Inactive{given ? tidy_message(reason.text, 200) : "its settings leave the picture as it is", told};
 }
 
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run) {

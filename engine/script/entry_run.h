@@ -41,9 +41,13 @@ struct EntryRun {
 /// px are multiplied by `length_scale`: numbers as they are, whatever their least value; integers rounded, and not
 /// below it.
 void make_settings(lua_State* lua, EntryRun& run, double length_scale);
-/// Why the effect has nothing to do with these settings; empty when it is active. `told`: whether its author wants
-/// people to hear of that.
-std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run, bool* told = nullptr);
+/// Why something has nothing to do.
+struct Inactive {
+  std::string reason;
+  bool told = false;  ///< its author wants people to hear of it
+};
+/// Empty when the effect, or the mask, is active with these settings.
+std::optional<Inactive> why_inactive(lua_State* lua, const EntryRun& run);
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run);
 std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run);
 /// What `idle` says about an effect that was built on `source`: the largest red, green or blue of it up to which the

@@ -120,7 +120,11 @@ bool runs_before(const StackEntry& a, const StackEntry& b) {
 using Entries = std::vector<DeclaredEntry>;
 
 Entries sorted(Entries entries, int depth) {
-  std::vector<Entries> units;
+  struct Unit {
+    Entries entries;    // a group's come with it
+    std::size_t place;  // in the list as it is written
+  };
+  std::vector<Unit> units;
   for (std::size_t i = 0; i < entries.size();) {
     DeclaredEntry head = std::move(entries[i]);
     head.entry.depth = depth;
@@ -137,12 +141,18 @@ Entries sorted(Entries entries, int depth) {
     i += static_cast<std::size_t>(members) + 1;
     Entries unit{std::move(head)};
     for (Entries* part : {&first, &rest}) std::ranges::move(*part, std::back_inserter(unit));
-    units.push_back(std::move(unit));
+    units.push_back({std::move(unit), units.size()});
   }
-  std::stable_sort(units.begin(), units.end(),
-                   [](const Entries& a, const Entries& b) { return runs_before(a.front().entry, b.front().entry); });
+  const auto head = [](const Unit& unit) -> const StackEntry& { return unit.entries.front().entry; };
+  std::ranges::stable_sort(units, [&](const Unit& a, const Unit& b) { return runs_before(head(a), head(b)); });
   Entries out;
-  for (auto& unit : units) std::ranges::move(unit, std::back_inserter(out));
+  for (auto unit = units.begin(); unit != units.end(); ++unit) {
+    const auto overtaken = std::find_if(unit + 1, units.end(), [&](const Unit& other) {
+      return other.place < unit->place && head(other).file == head(*unit).file;
+    });
+    if (overtaken != units.end()) unit->entries.front().entry.overtakes = head(*overtaken).name;
+    std::ranges::move(unit->entries, std::back_inserter(out));
+  }
   return out;
 }
 

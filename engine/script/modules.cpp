@@ -56,6 +56,14 @@ std::string module_file(const std::string& name) {
   return file + ".lua";
 }
 
+// "lib/taps.lua" → "lib.taps"; empty when that is no name either.
+std::string module_of_file(std::string name) {
+  if (name.starts_with("./")) name.erase(0, 2);
+  if (name.ends_with(".lua")) name.resize(name.size() - 4);
+  std::ranges::replace(name, '/', '.');
+  return module_file(name).empty() ? "" : name;
+}
+
 // Folders that modules may lie in, for the script that is running: the one that it comes from first, so that what lies
 // beside a preset does not change what built-in effects require, nor one pack what another does.
 std::vector<fs::path> module_folders(lua_State* lua) {
@@ -89,7 +97,7 @@ fs::path find_module(const Runtime& runtime, const std::vector<fs::path>& folder
   const std::string file = module_file(name);
   if (file.empty())
     throw failure(fmt::format("require: '{}' is not the name of a module", tidy_message(name, 60)), {},
-                  "names joined by '.', like \"lib.taps\"");
+                  "names joined by '.', like \"lib.taps\"", module_of_file(name));
   for (const auto& folder : folders) {
     const fs::path path = folder / file;
     if (!is_file(path, runtime.path.record.get())) continue;

@@ -104,7 +104,7 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
   for (const auto& run : runs) {
     current = &run.entry;
     const bool changes = script::may_change(run, surroundings);
-    if (!run.entry.enabled || (!changes && inactive_reason(lua, run))) continue;
+    if (!run.entry.enabled || (!changes && why_inactive(lua, run))) continue;
     note(needed_inputs(lua, run));
     note(optional_inputs(lua, run));
     std::vector<std::string> of_masks;

@@ -70,6 +70,7 @@ struct StackEntry {
   int members = 0;  ///< of a group or mix: so many entries behind it belong to it, with those that belong to them
   int middle = 0;   ///< of a mix: so many of them are its first look
   int depth = 0;    ///< in how many groups it stands
+  std::string overtakes = {};  ///< the first entry of its list that is written above it and runs behind it; empty: none
   /// All of them, in the schema's order.
   std::vector<std::pair<std::string, SettingValue>> settings;
   std::vector<std::string> changed;  ///< names of those that the preset or an override set; "opacity", "blend", "mask"

@@ -48,16 +48,19 @@ void warn_skipped(const StackEntry& entry, const std::string& reason, Diagnostic
                         fmt::format("effect '{}' is skipped: {}", entry.name, reason));
 }
 
+void skip(const StackEntry& entry, Inactive why, GraphBuilder& graph, Diagnostics& diagnostics) {
+  if (why.told) warn_skipped(entry, why.reason, diagnostics);
+  graph.add_skipped(entry.name, std::move(why.reason));
+}
+
 }  // namespace
 
 ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                                     Diagnostics& diagnostics) {
   const StackEntry& entry = run.entry;
   if (is_left_out(lua, run, graph, diagnostics)) return source;
-  bool told = false;
-  if (auto reason = inactive_reason(lua, run, &told)) {
-    if (told) warn_skipped(entry, *reason, diagnostics);
-    graph.add_skipped(entry.name, std::move(*reason));
+  if (auto why = why_inactive(lua, run)) {
+    skip(entry, std::move(*why), graph, diagnostics);
     return source;
   }
   std::vector<std::string> inputs = needed_inputs(lua, run);
@@ -84,12 +87,12 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
     graph.add_skipped(entry.name, "disabled");
     return true;
   }
-  if (auto reason = unseen_reason(lua, run)) {
-    graph.add_skipped(entry.name, std::move(*reason));
+  if (auto why = why_unseen(lua, run)) {
+    skip(entry, std::move(*why), graph, diagnostics);
     return true;
   }
   std::vector<std::string> inputs, missing;
-  if (!inactive_reason(lua, run)) inputs = needed_inputs(lua, run);
+  if (!why_inactive(lua, run)) inputs = needed_inputs(lua, run);
   add_mask_inputs(lua, run, false, inputs);
   for (const auto& input : inputs)
     if (!graph.context().auxiliary.contains(input)) missing.push_back(input);

@@ -110,7 +110,7 @@ std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>
   LightSpace light = LightSpace::scene;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     out[i].use = use_of(lua, runs[i]);
-    out[i].runs = runs[i].entry.enabled && !inactive_reason(lua, runs[i]);
+    out[i].runs = runs[i].entry.enabled && !why_inactive(lua, runs[i]);
     out[i].before = out[i].behind = light;
     if (!out[i].runs) continue;
     if (out[i].use.needs == LightSpace::scene && light == LightSpace::display)

@@ -5,6 +5,7 @@
 
 #include "core/exception.h"
 #include "core/file.h"
+#include "core/locale.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
 
@@ -117,6 +118,7 @@ bool LiveBuilder::overtaken() const {
 // ---- the thread
 
 void LiveBuilder::run() {
+  const PlainLocale plain;
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [&] { return ends_ || wanted_.any() || !dead_.empty(); });

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/exception.h"
+#include "core/locale.h"
 #include "core/stopwatch.h"
 #include "exec/cpu/warm_up.h"
 #include "image/encode.h"
@@ -149,6 +150,7 @@ void Session::State::warm_up(const Program& program) {
   warming_up =
       std::async(std::launch::async, [&device = *device, kernels = programs.kernels(), path = stack->shaders().path(),
                                       graph = program.graph(), wanted = std::move(wanted)] {
+        const PlainLocale plain;
         auto other = WarmUp::create(device);
         if (!other) return;
         ShaderLibrary shaders(path);  // that of the stack is looked for elsewhere as scripts say

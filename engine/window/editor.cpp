@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "core/process.h"
+
 namespace afterglow {
 namespace {
 
@@ -78,7 +80,7 @@ Result<void> open_in_editor(const std::filesystem::path& file, int line) {
   argv.push_back(nullptr);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);  // it lives on without us
+  hear_signals(attributes, POSIX_SPAWN_SETSID);  // it lives on without us
   pid_t child = 0;
   const int problem = posix_spawnp(&child, argv[0], nullptr, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);

@@ -11,7 +11,7 @@ return fx.effect {
   },
   needs = function(s) return { "layer:" .. s.layer .. "00" } end,
   optional = function(s) return { "layer:" .. s.layer .. "01", "layer:" .. s.layer .. "02" } end,
-  active = function(s) return s.names ~= "", "no object is named" end,
+  active = function(s) return s.names ~= "", "no object is named", true end,
   build = function(g, s, source)
     local ids = g:cryptomatte { layer = s.layer, names = s.names }
     if #ids == 0 then

@@ -11,7 +11,7 @@ return fx.effect {
     file = fx.file { extensions = { "exr", "png", "tif", "tiff", "hdr", "jpg", "jpeg" }, doc = "The picture." },
     channel = fx.enum { "r", "g", "b", "a", "luma", default = "luma", doc = "What of it is the mask; linear." },
   },
-  active = function(s) return s.file ~= "", "no file is named" end,
+  active = function(s) return s.file ~= "", "no file is named", true end,
   build = function(g, s, source)
     return g:pass { shader = "mask/file", size = source, picture = g:image { file = s.file, alpha = s.channel == "a" }, channel = channels[s.channel] }
   end,

@@ -12,7 +12,7 @@ return fx.effect {
     channel = fx.enum { "r", "g", "b", "a", "luma", default = "r", doc = "Which of its channels. Of a layer of one channel: r." },
   },
   needs = function(s) return s.layer ~= "" and { "layer:" .. s.layer } or {} end,
-  active = function(s) return s.layer ~= "", "no layer is named" end,
+  active = function(s) return s.layer ~= "", "no layer is named", true end,
   build = function(g, s, source)
     return g:pass { shader = "mask/channel", source = source, layer = g:input("layer:" .. s.layer), channel = channels[s.channel] }
   end,

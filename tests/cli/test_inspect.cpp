@@ -52,6 +52,60 @@ TEST_F(Inspect, CheckTellsWhatRunsInAnotherOrderThanItIsWritten) {
   EXPECT_THAT(check("fx.tone_mapping {},\nfx.exposure { ev = 1 },\n"),
               HasSubstr("note: runs before 'tone_mapping', which is written above it"));
   EXPECT_THAT(check("fx.exposure { ev = 1 },\nfx.tone_mapping {},\n"), Not(HasSubstr("note:")));
+  EXPECT_THAT(check("fx.tone_mapping {}, fx.exposure { ev = 1 }, "), HasSubstr("note: runs before 'tone_mapping'"));
+  // Made in another order than they stand in the list, and in groups of their own.
+  write("order.lua",
+        "local fx = require \"afterglow\"\nlocal late = fx.tone_mapping {}\n"
+        "return fx.stack { fx.exposure { ev = 1 },\nlate,\n"
+        "fx.group { at = \"final\", fx.vignette { intensity = 1 } },\n"
+        "fx.group { at = \"final\", fx.sharpen {} } }\n");
+  EXPECT_THAT(run({"check", "order.lua"}).out, Not(HasSubstr("note: runs before")));
+}
+
+TEST_F(Inspect, EffectsThatNoStackCanNameAreTold) {
+  const std::string text =
+      "return require(\"afterglow\").effect { name = \"mine\", build = function(g, s, i) return i end }";
+  for (const char* name : {"my-glow", "group", "color"}) write(std::string("effects/") + name + ".lua", text);
+  const Outcome outcome = run({"effects", "--path", "."});
+  EXPECT_EQ(outcome.exit_code, kDone);
+  EXPECT_THAT(outcome.err, HasSubstr("effects/my-glow.lua is left out: the name of an effect has letters, digits and "
+                                     "'_' alone"));
+  EXPECT_THAT(outcome.err, HasSubstr("effects/group.lua is left out: fx.group is a name of the library"));
+  EXPECT_THAT(outcome.err, HasSubstr("effects/color.lua is left out: fx.color is a name of the library"));
+}
+
+TEST_F(Inspect, UnknownNamesInShadersAreToldWithTheNearest) {
+  write("effects/mine.lua",
+        "return require(\"afterglow\").effect { name = \"mine\", build = function(g, s, image)\n"
+        "return g:pass { shader = \"mine\", source = image, amount = 1 } end }");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.mine {} }");
+  const auto error = [&](const std::string& factor) {
+    write("shaders/mine.glsl", "uniform float amount;\nvec4 apply(vec4 color) { return color * " + factor + "; }\n");
+    const std::string text = run({"check", "look.lua"}).err;
+    const auto begin = text.find("glsl:2: error: ");
+    return begin == std::string::npos ? text : text.substr(begin + 15, text.find('\n') - begin - 15);
+  };
+  EXPECT_EQ(error("luminance(color.rgb)"),
+            "'luminance' is not known here; lib/color.glsl has it: #include \"lib/color.glsl\"");
+  EXPECT_EQ(error("smothstep(0.0, 1.0, amount)"),
+            "'smothstep': no matching overloaded function found; did you mean 'smoothstep'?");
+  EXPECT_EQ(error("fecth(color, ivec2(0))"), "'fecth': no matching overloaded function found; did you mean 'fetch'?");
+  EXPECT_EQ(error("amuont"), "'amuont': undeclared identifier; did you mean 'amount'?");
+  EXPECT_EQ(error("mix(color)"), "'mix': no matching overloaded function found");
+}
+
+TEST_F(Inspect, AMaskThatCanSelectNothingIsAWarning) {
+  const auto told = [&](const std::string& mask) {
+    write("masked.lua",
+          "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = " + mask + " } }");
+    return run({"check", "masked.lua"}).err;
+  };
+  const std::string warning = "warning: effect 'exposure' is skipped: its mask selects nothing: ";
+  EXPECT_THAT(told("fx.mask.luma { to = 0.2 }"), HasSubstr(warning + "luma: from is above to"));
+  EXPECT_THAT(told("fx.mask.file {}"), HasSubstr(warning + "file: no file is named"));
+  EXPECT_THAT(told("fx.mask.radial {} * fx.mask.layer {}"), HasSubstr(warning + "layer: no layer is named"));
+  EXPECT_THAT(told("fx.mask.radial { radius = { 0, 1 } }"), Not(HasSubstr("warning"))) << "it may be animated";
+  EXPECT_THAT(told("0"), Not(HasSubstr("warning")));
 }
 
 TEST_F(Inspect, CheckAsJson) {

@@ -119,6 +119,16 @@ TEST_F(Set, Messages) {
   fails({"set", "nowhere.lua", "bloom.knee=1"}, kScript, "nowhere.lua: error:");
 }
 
+TEST_F(Set, AFileThatIsNotThereIsAWarning) {
+  write("lut.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut {} }\n");
+  const Outcome outcome = run({"set", "lut.lua", "lut.file=later.cube"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: lut.file = \"later.cube\": there is no such file beside the preset"));
+  EXPECT_THAT(read("lut.lua"), HasSubstr("fx.lut { file = \"later.cube\" }"));
+  write("later.cube", "LUT_3D_SIZE 2\n");
+  EXPECT_THAT(run({"set", "lut.lua", "lut.file=later.cube"}).err, Not(HasSubstr("warning")));
+}
+
 TEST_F(Set, FilesThatMayNotBeWritten) {
   fs::permissions(path("look.lua"), fs::perms::owner_read);
   const Outcome outcome = run({"set", "look.lua", "bloom.knee=1"}, {.bound = true});

@@ -35,7 +35,10 @@ void Callback::call(const char* name, const std::function<void(const py::object&
   try {
     work(function);
   } catch (py::error_already_set& error) {
+    // Ctrl+C is meant for the program, whichever function it came to: the main thread raises it once more.
+    const bool interrupted = error.matches(PyExc_KeyboardInterrupt);
     error.discard_as_unraisable(name);
+    if (interrupted) PyErr_SetInterrupt();
   }
 }
 

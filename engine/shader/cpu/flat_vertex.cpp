@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kUnit = 16;  ///< bytes of a row of the block
 
-enum Id : std::uint32_t {
+enum : std::uint32_t {
   nothing = 1,
   function,
   real,

@@ -81,6 +81,21 @@ TEST_F(Pack, UnpacksOnceUnderItsName) {
   EXPECT_EQ(left_behind().size(), 2u);
 }
 
+TEST_F(Pack, AFolderThatWasZippedWholeIsWhatIsInIt) {
+  const auto has = [&](const std::vector<Item>& items, const char* file, const std::string& name) {
+    const auto opened = open(make(items, name));
+    return opened && fs::exists(*opened / file);
+  };
+  const Item noise{"__MACOSX/mine/._haze.lua", "x"}, store{"mine/.DS_Store", "x"};
+  EXPECT_TRUE(has({{"mine/effects/haze.lua", ""}, {"mine/read.me", ""}, noise, store}, "effects/haze.lua", "1.zip"));
+  EXPECT_TRUE(has({{"mine/warm.lua", ""}, {"mine/luts/a.cube", ""}}, "luts/a.cube", "mine.zip"));
+  // Names of a pack are not taken apart.
+  EXPECT_TRUE(has({{"effects/masks/haze.lua", ""}}, "effects/masks/haze.lua", "2.zip"));
+  EXPECT_TRUE(has({{"luts/film/a.cube", ""}}, "luts/film/a.cube", "3.zip"));
+  EXPECT_TRUE(has({{"lib/taps.lua", ""}}, "lib/taps.lua", "4.zip"));
+  EXPECT_TRUE(has({{"mine/effects/haze.lua", ""}, {"other.lua", ""}}, "mine/effects/haze.lua", "5.zip"));
+}
+
 TEST_F(Pack, WhatIsBrokenInTheCacheIsMadeAnew) {
   const fs::path zip = make({{"a.txt", "one"}, {"b.txt", "two"}});
   const fs::path opened = open(zip).value();
