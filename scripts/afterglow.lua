@@ -301,7 +301,7 @@ end
 function filters.area(x, y)
   local function taps(ratio)
     if type(ratio) ~= "number" or not (ratio > 0 and ratio <= 16) then
-      core.fail("fx.filters.area: " .. core.show(ratio) .. " is not a ratio of sizes", "0 < ratio ≤ 16")
+      core.fail("fx.filters.area: " .. core.show(ratio) .. " is not a ratio of sizes", "0 < ratio ≤ 16; for more, two filters one behind the other")
     end
     if ratio <= 1 then return { { 0, 1 } } end
     local out, n = {}, ratio % 1 == 0 and ratio or math.ceil(2 * ratio)

@@ -320,8 +320,8 @@ typedef struct afterglow_run_info {
   const afterglow_frame *frame; /* NULL: afterglow_frame_default() */
   afterglow_image source;
   /* As large as the source; floats or halves. depth: distance in units of the scene, or device depth as the preset's
-   * settings say; normal: x, y, z; motion: how far the content of a pixel moves in one frame, in pixels, x to the right
-   * and y down. */
+   * settings say; normal: x, y, z; motion: the way from where the content of a pixel is to where it was a frame ago, in
+   * pixels, x to the right and y down (taa has a setting for the other way round). */
   afterglow_image depth, normal, motion;
   /* As large as the source. May be the source itself, with the same samples and strides. */
   afterglow_image result;

@@ -38,10 +38,6 @@ struct BatchRun {
   double milliseconds() const { return milliseconds_since(start); }
 };
 
-BuildContext usual_frame(const BatchRun& run, double frame) {
-  return usual_context(run.session->preset(), {1920, 1080}, frame, run.request.loop.fps);
-}
-
 std::string options_text(const PixelOptions& options) {
   std::string text;
   for (const auto& [name, value] : options) text += name + "=" + value + "|";
@@ -76,8 +72,10 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
   Preset& preset = run.session->preset();
   const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
   std::optional<int> most;
+  const Size size = frames.size() == 1 ? kUsualSize : loop.usual_size(frames);
   for (std::size_t i = 0; i < asked; ++i) {
-    const BuildContext context = usual_frame(run, frames[i * frames.size() / asked].job.frame);
+    const double frame = frames[i * frames.size() / asked].job.frame;
+    const BuildContext context = usual_context(preset, size, frame, run.request.loop.fps);
     // A picture alone is asked itself, and what is said of it is what runs.
     auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
     if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
@@ -92,10 +90,11 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
 /// What the look is made of in these frames.
 Result<Inventory> inventory_of(BatchRun& run, std::size_t frames) {
   std::vector<const FrameJob*> jobs;
-  for (std::size_t i = 0; i < std::min(frames, run.report.frames.size()); ++i)
-    jobs.push_back(&run.report.frames[i].job);
+  for (const auto& frame : run.report.frames) jobs.push_back(&frame.job);
+  const Size size = size_of_first(jobs);
+  jobs.resize(std::min(frames, jobs.size()));
   Preset& preset = run.session->preset();
-  return take_inventory(preset, usual_contexts(preset, jobs, run.request.loop.fps), run.events.diagnostics);
+  return take_inventory(preset, usual_contexts(preset, jobs, run.request.loop.fps, size), run.events.diagnostics);
 }
 
 bool takes_notes(const BatchRun& run) {

@@ -128,6 +128,11 @@ Result<void> FrameLoop::close(Result<void> result) {
   if (!last) return last;
   if (stream_error_) return *stream_error_;
   if (total_ > 1) non_finite_.sum_up(events_.diagnostics);
+  for (const auto& [name, frames] : replaced_)
+    events_.diagnostics.warn(
+        fmt::format("history '{}' began anew {} within a sequence: passes that it is made of, or its size, were "
+                    "others than in the frame before",
+                    name, frames == 1 ? "once" : fmt::format("{} times", frames)));
   if (failed_ > 0) return Error{ErrorKind::io, fmt::format("{} of {} frames failed", failed_, total_)};
   return {};
 }
@@ -281,6 +286,9 @@ Result<void> FrameLoop::finish_running() {
   Picture picture;
   if (const auto made = make(*reading, picture); !made) return failed(*reading, made.error());
   if (session_.device().validation_errors() > 0) return failed(*reading, {});
+  const auto replaced = session_.take_replaced_histories();
+  if (options_.histories && last_ && !reading->request.restart)
+    for (const auto& name : replaced) ++replaced_[name];
   last_ = frame.job.frame;
   if (reading->pre_roll) {
     frame.state = FrameRecord::State::done;

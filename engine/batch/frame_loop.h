@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,6 +38,8 @@ class FrameLoop {
   /// The header of a frame's picture, and what the preset says of that frame: kept for `run`, if it comes first there.
   /// Errors: those of reading the header and of the script.
   Result<std::shared_ptr<const Build>> inspect(const FrameJob& job);
+  /// See FramePlanner.
+  Size usual_size(const FrameRecords& frames) const { return planner_.usual_size(frames); }
   /// Pictures depend on the frames before them: see FrameLoopOptions.
   void follow_histories() { options_.histories = true; }
   /// Each frame gets its FrameJob::made_of. `notes` outlives the loop.
@@ -86,10 +89,11 @@ class FrameLoop {
   bool endless_ = false;    ///< nobody knows how many frames will come
   std::optional<Error> stream_error_;
   Overlap overlap_;
-  std::optional<int> last_;        ///< number of the frame that the next one follows
-  std::vector<std::size_t> gaps_;  ///< places of frames of its sequence that are not in its history: they failed
-  std::optional<int> begun_;       ///< number of the frame that was evaluated last
-  std::deque<SharedSkips> skips_;  ///< of frames so far, the newest first
+  std::map<std::string, int> replaced_;  ///< histories that began anew within a sequence, and in how many frames
+  std::optional<int> last_;              ///< number of the frame that the next one follows
+  std::vector<std::size_t> gaps_;        ///< places of frames of its sequence that are not in its history: they failed
+  std::optional<int> begun_;             ///< number of the frame that was evaluated last
+  std::deque<SharedSkips> skips_;        ///< of frames so far, the newest first
 };
 
 }  // namespace afterglow

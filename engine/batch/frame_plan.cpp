@@ -91,23 +91,39 @@ std::optional<Scaling> FramePlanner::scaling_of(const PictureHeader& header) con
   return Scaling{size, half && session_.preset().detailed() ? 2 : 1};
 }
 
+FramePlanner::Shape FramePlanner::shape_of(const PictureHeader& header) const {
+  Shape shape{.data = header.data_window, .display = header.display_window};
+  if (const auto scaling = scaling_of(header)) {
+    shape.finer = scaling->finer;
+    const Size whole = shape.display.size(), size = scaling->display;
+    shape.length_scale = shape.finer * std::sqrt(static_cast<double>(size.area()) / static_cast<double>(whole.area()));
+    shape.data = scaled_window(shape.data, shape.display, size);
+    shape.display = {shape.display.x, shape.display.y, size.width, size.height};
+  }
+  return shape;
+}
+
+Size FramePlanner::usual_size(const FrameRecords& frames) const {
+  constexpr std::size_t kMostAsked = 8;
+  for (std::size_t i = 0; i < std::min(frames.size(), kMostAsked); ++i) {
+    const FrameJob& job = frames[i].job;
+    if (job.passing) continue;  // its header comes with its pixels
+    if (const auto header = read_header(job.input, read_options(job))) return shape_of(*header).size();
+  }
+  return kUsualSize;
+}
+
 /// What is wanted of the picture with this header.
 Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const PictureHeader& header, double step,
                                               bool restart) {
   FrameRequest request;
   BuildContext context;
-  Rect data = header.data_window, display = header.display_window;
-  int finer = 1;
-  if (const auto scaling = scaling_of(header)) {
-    finer = scaling->finer;
-    const Size whole = display.size(), size = scaling->display;
-    context.length_scale = finer * std::sqrt(static_cast<double>(size.area()) / static_cast<double>(whole.area()));
-    data = scaled_window(data, display, size);
-    display = {display.x, display.y, size.width, size.height};
-  }
-  context.size = {data.width * finer, data.height * finer};
+  const Shape shape = shape_of(header);
+  const int finer = shape.finer;
+  context.length_scale = shape.length_scale;
+  context.size = shape.size();
   if (options_.region) {
-    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, data, display));
+    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, shape.data, shape.display));
     request.region = Rect{part.x * finer, part.y * finer, part.width * finer, part.height * finer};
   }
   const auto& wanted = options_.read.auxiliary;

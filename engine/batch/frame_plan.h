@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "batch/frame_sink.h"
+#include "batch/inventory.h"
+#include "batch/run_report.h"
 #include "image/reader.h"
 #include "image/scale.h"
 #include "image/writer.h"
@@ -73,8 +75,18 @@ class FramePlanner {
   /// Errors: io (above --max-memory).
   Result<FrameNeed> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::uint64_t largest_need() const { return largest_need_; }
+  /// In which the look runs on the first of the frames whose header can be read; where there is none, kUsualSize.
+  Size usual_size(const FrameRecords& frames) const;
 
  private:
+  /// Of what the look runs on: `finer` times the windows on each side.
+  struct Shape {
+    Rect data, display;
+    int finer = 1;
+    double length_scale = 1;
+    Size size() const { return {data.width * finer, data.height * finer}; }
+  };
+  Shape shape_of(const PictureHeader& header) const;
   Result<FrameRequest> request_of(const FrameJob& job, const PictureHeader& header, double step, bool restart);
 
   Session& session_;

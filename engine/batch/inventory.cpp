@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/made_shaders.h"
 #include "core/parse_number.h"
+#include "image/reader.h"
 
 namespace afterglow {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostEvaluated = 64;  // frames, besides those that name new files; and as many of these
-constexpr Size kUsualSize{1920, 1080};
 
 bool is_made(const SearchPath& path, const std::string& shader) { return path.made && path.made->find(shader); }
 
@@ -93,10 +93,23 @@ Result<Inventory> take_inventory(Preset& preset, const std::vector<BuildContext>
   return out;
 }
 
-std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps) {
+Size size_of_first(const std::vector<const FrameJob*>& jobs) {
+  constexpr std::size_t kMostAsked = 8;
+  for (std::size_t i = 0; i < std::min(jobs.size(), kMostAsked); ++i) {
+    ReadOptions options;
+    options.movie = jobs[i]->movie;
+    options.movie_frame = jobs[i]->movie_frame;
+    if (jobs[i]->passing) continue;  // its header comes with its pixels
+    if (const auto header = read_header(jobs[i]->input, options)) return header->data_window.size();
+  }
+  return kUsualSize;
+}
+
+std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
+                                         Size size) {
   std::vector<BuildContext> out;
   for (const FrameJob* job : jobs) {
-    out.push_back(usual_context(preset, kUsualSize, job->frame, job->fps > 0 ? job->fps : fps));
+    out.push_back(usual_context(preset, size, job->frame, job->fps > 0 ? job->fps : fps));
     out.back().time = job->time.value_or(job->frame / fps);
   }
   return out;

@@ -34,8 +34,13 @@ using EachBuild = std::function<void(const Build&)>;
 Result<Inventory> take_inventory(Preset& preset, const std::vector<BuildContext>& frames, Diagnostics& diagnostics,
                                  const EachBuild& each = {});
 
+inline constexpr Size kUsualSize{1920, 1080};  ///< of pictures whose size nobody knows
+
+/// Of the first of these whose header can be read; where there is none, kUsualSize.
+Size size_of_first(const std::vector<const FrameJob*>& jobs);
 /// The frames as they usually are: see usual_context.
-std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps);
+std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
+                                         Size size);
 
 /// Hashes of files, each read once. Of those that the preset has read it is what it read then, whatever lies there by
 /// now.

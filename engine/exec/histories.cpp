@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <utility>
@@ -82,6 +83,8 @@ Result<void> Histories::fit(const Device& device, const Graph& graph, const Opti
     const auto found = kept_.find(history.name);
     if (found != kept_.end() && found->second.part == part && fits(found->second.images[0].desc(), desc)) continue;
     turn_ = images_id_ = next_number();
+    if (found != kept_.end() && found->second.next_holds && std::ranges::count(replaced_, history.name) == 0)
+      replaced_.push_back(history.name);
     kept_.erase(history.name);  // before the new ones are made: they need not exist at once
     AFTERGLOW_TRY(Kept kept, make(device, history.name, part, desc));
     kept_.emplace(history.name, std::move(kept));

@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/hash.h"
 #include "gpu/image.h"
@@ -34,6 +36,8 @@ class Histories {
   /// uses them is in flight; programs have to be pointed at them afterwards (`images_id`). Errors: device, io (over
   /// `max_memory`).
   Result<void> fit(const Device& device, const Graph& graph, const Options& options);
+  /// Names of those that held a frame and began anew in `fit`, since this was asked last.
+  std::vector<std::string> take_replaced() { return std::exchange(replaced_, {}); }
   /// Takes over the images of `other` that fit as well as those here, with what they hold and the place in time;
   /// `other` is left without them. For a stack that takes another's place. As `fit` in the rest.
   void take(Histories& other);
@@ -72,6 +76,7 @@ class Histories {
   static Result<Kept> make(const Device& device, const std::string& name, const Hash& part, ImageDesc desc);
 
   std::map<std::string, Kept> kept_;
+  std::vector<std::string> replaced_;
   int previous_ = 0;
   std::uint64_t turn_ = 0, images_id_ = next_number();
   std::optional<double> before_;  ///< number of the frame that `previous` holds

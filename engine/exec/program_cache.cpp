@@ -314,6 +314,8 @@ Result<std::unique_ptr<Program>> ProgramCache::by_passes(const Graph& graph, con
   return Program::create(s.device, shaders, s.shared->compiler, graph, options);
 }
 
+std::vector<std::string> ProgramCache::take_replaced_histories() { return state_->histories->take_replaced(); }
+
 bool ProgramCache::can_use_again(Program& by_passes) const {
   return static_cast<bool>(by_passes.use(state_->histories));
 }

@@ -115,6 +115,8 @@ class ProgramCache {
   void made();
   /// What earlier frames handed on is forgotten: the next one has none before it.
   void reset_histories();
+  /// See Histories.
+  std::vector<std::string> take_replaced_histories();
   /// Takes the place of `before`: goes on where that is in its frames, with the images of its histories that mean the
   /// same here, and if so with its programs as spare ones. `before` must not be used any more, and no submission of
   /// either may be in flight.

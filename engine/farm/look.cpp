@@ -50,7 +50,7 @@ Result<Inventory> inventory_of(Preset& preset, const std::vector<FrameJob>& fram
                                Diagnostics& diagnostics, const EachBuild& each = {}) {
   std::vector<const FrameJob*> jobs;
   for (const auto& frame : frames) jobs.push_back(&frame);
-  return take_inventory(preset, usual_contexts(preset, jobs, fps), diagnostics, each);
+  return take_inventory(preset, usual_contexts(preset, jobs, fps, size_of_first(jobs)), diagnostics, each);
 }
 
 }  // namespace

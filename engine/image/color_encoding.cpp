@@ -173,6 +173,14 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
     for (std::size_t i = 0; i < pixels; ++i) rgba[i * 4 + 1] = rgba[i * 4 + 2] = rgba[i * 4];
   if (encoding.alpha == AlphaKind::none)
     for (std::size_t i = 0; i < pixels; ++i) rgba[i * 4 + 3] = 1;
+  if (encoding.data) {
+    for (std::size_t i = 0; i < pixels * 4; ++i) {
+      float& value = rgba[i];
+      counts.nan += std::isnan(value);
+      value = std::isnan(value) ? 0.0f : std::clamp(value, -kLargestColor, kLargestColor);
+    }
+    return;
+  }
   const bool straight = encoding.alpha == AlphaKind::straight;
   // Associated integers were multiplied after they had been encoded: divide first, multiply again in linear light.
   const bool divide = encoding.alpha == AlphaKind::associated && (!curve.identity() || encoding.transform);

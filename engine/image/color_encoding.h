@@ -38,6 +38,7 @@ struct ColorEncoding {
   int max_code = 0;  ///< 255 or 65535 for integers of that many codes; 0: any value
   /// Stored values lie anywhere between codes, most of them in −0.25…1.25: curves are taken from a fine table there.
   bool dense = false;
+  bool data = false;  ///< no colours: values stay as they are stored, if they are finite
   bool grey = false;  ///< only the first sample of a pixel was read; it stands for all three
 };
 

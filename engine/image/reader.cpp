@@ -224,6 +224,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));
     use_input_space(*space, encoding);
   }
+  encoding.data = options.raw;
 
   AFTERGLOW_TRY(const bool done, read_halves(plan, encoding, options, picture));
   if (done) {

@@ -176,17 +176,18 @@ const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::strin
   return *(known = std::move(loaded));
 }
 
-std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& file) {
+std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& file, bool raw) {
   Runtime& runtime = Runtime::of(lua);
-  auto& known = runtime.assets.pictures[file];
+  auto& known = runtime.assets.pictures[{file, raw}];
   if (known) return known;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  auto loaded = stored<ImageData>(runtime, "picture", file, "", kMaxBytes, [&] {
+  auto loaded = stored<ImageData>(runtime, "picture", file, raw ? "raw" : "", kMaxBytes, [&] {
     Diagnostics ignored;
     ReadOptions options;
     options.max_side = kMaxSide;
     options.max_bytes = kMaxBytes;
+    options.raw = raw;
     auto picture = read_picture(file, options, ignored);
     if (!picture) {
       Error error = std::move(picture).error();

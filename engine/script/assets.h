@@ -42,8 +42,8 @@ struct LoadedOcio {
 struct Assets {
   /// By file and correction.
   std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const LoadedLut>> luts;
-  std::map<std::string, std::shared_ptr<const LoadedOcio>> ocio;  ///< by request
-  std::map<std::filesystem::path, std::shared_ptr<const ImageData>> pictures;
+  std::map<std::string, std::shared_ptr<const LoadedOcio>> ocio;                                ///< by request
+  std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const ImageData>> pictures;  ///< `raw` or not
   std::size_t bytes = 0;
   std::shared_ptr<AssetStore> store;  ///< what other states have read
   std::uint64_t look = 0;             ///< the store's number of this one; 0: it has asked for nothing yet
@@ -56,7 +56,8 @@ std::filesystem::path find_asset(lua_State* lua, const std::string& what, const 
 
 /// Errors: throw ScriptError (see read_lut, read_picture; too much in all).
 const LoadedLut& load_lut(lua_State* lua, const std::filesystem::path& file, const std::string& correction);
-std::shared_ptr<const ImageData> load_picture(lua_State* lua, const std::filesystem::path& file);
+/// `raw`: see ReadOptions.
+std::shared_ptr<const ImageData> load_picture(lua_State* lua, const std::filesystem::path& file, bool raw);
 
 // ---- what those need who read files of other kinds
 

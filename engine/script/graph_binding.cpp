@@ -256,10 +256,10 @@ int graph_ocio(lua_State* lua) {
 int graph_image(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:image { file = … }");
   TableReader table(lua, 2, fmt::format("effect '{}': g:image", graph.entry().effect));
-  table.allow({"alpha", "file"}, false);
-  const bool alpha = table.boolean("alpha").value_or(false);
+  table.allow({"alpha", "file", "raw"}, false);
+  const bool alpha = table.boolean("alpha").value_or(false), raw = table.boolean("raw").value_or(false);
   const auto file = read_file_key(lua, table, "image");
-  auto picture = load_picture(lua, file);
+  auto picture = load_picture(lua, file, raw);
   if (alpha && picture->opaque)
     Runtime::of(lua).box->diagnostics->warn_once(
         "no alpha " + file.string(),

@@ -103,6 +103,8 @@ class GraphBuilder {
   ImageRef data(const std::string& name, std::shared_ptr<const ImageData> pixels);
   /// What an author should know about the alpha of what an effect made; none: nothing.
   std::optional<std::string> fixed_alpha(const ImageRef& made) const;
+  /// What authors should know about the shaders of the present entry.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
   const std::optional<std::string>& skip_reason() const { return skip_reason_; }
 
@@ -148,6 +150,7 @@ class GraphBuilder {
   const StackEntry* entry_ = nullptr;
   std::vector<std::string> inputs_;
   bool straight_ = false;
+  std::vector<std::string> warnings_;
   std::string prefix_;
   /// Of the present entry: histories that wait for `keep`, and the places that asked for them.
   std::vector<std::pair<std::string, CallPlace>> open_histories_;

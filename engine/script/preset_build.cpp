@@ -68,6 +68,7 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
   graph.begin(entry, std::move(inputs), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
   const ImageRef image = run_build(lua, run, graph, source);
   graph.end();
+  for (const auto& warning : graph.warnings()) diagnostics.warn_once(warning, warning);
   if (image.id == source.id) {
     graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
     return image;

@@ -248,6 +248,10 @@ Result<Trace> Session::trace(const Picture& picture, const FrameRequest& request
 
 void Session::forget_clamped() { state_->result.clamped = 0; }
 
+std::vector<std::string> Session::take_replaced_histories() {
+  return state_->stack->programs()->take_replaced_histories();
+}
+
 SessionReport Session::report() const {
   const Stack& stack = *state_->stack;
   SessionReport report;

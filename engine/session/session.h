@@ -97,6 +97,9 @@ class Session {
   Result<Trace> trace(const Picture& picture, const FrameRequest& request, NanPolicy policy);
   /// The last result was replaced by that of a trace: none of its samples was held at what half floats hold.
   void forget_clamped();
+  /// Names of histories that held a frame and began anew since this was asked last: passes that they are made of, or
+  /// their size, were others.
+  std::vector<std::string> take_replaced_histories();
   SessionReport report() const;
 
  private:

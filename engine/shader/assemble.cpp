@@ -87,9 +87,10 @@ class Assembler {
     keep(0);
     for (std::size_t i = 0; i < kernel_.stages.size(); ++i) AFTERGLOW_CHECK(pixel_stage(i));
     if (out_.images.size() > kMaxImages) {
-      Error error{ErrorKind::script, fmt::format("the fused passes read {} images", out_.images.size())};
-      error.allowed = fmt::format("at most {}", kMaxImages);
-      return error;
+      const KernelStage& last = kernel_.stages.empty() ? *kernel_.sample : kernel_.stages.back();
+      return Error{ErrorKind::script,
+                   fmt::format("pass '{}' reads {} images, with its source", last.label, out_.images.size()),
+                   last.shader->path.string(), 0, fmt::format("at most {}", kMaxImages)};
     }
     out_.glsl += kHeader;
     out_.file_names = texts_.file_names();

@@ -226,6 +226,13 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
       begins = false;
     }
     if (at.op == spv::OpLabel && function == main) begins = !first.empty(), main = 0;
+    // modf gives its second argument a value; what value does not matter here.
+    constexpr std::uint32_t kModf = 35;  // of GLSL.std.450
+    if (at.op == spv::OpExtInst && at.words.size() == 7 && at.words[4] == kModf) {
+      code.push_back(store(at.words[6], at.words[5]));
+      code.push_back(Instruction::of_ids(spv::OpCopyObject, at.type, at.result, {at.words[5]}));
+      continue;
+    }
     const auto mark = mark_at(module, i, ids);
     if (!mark) {
       code.push_back(at);

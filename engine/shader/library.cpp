@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "shader/fixed_alpha.h"
 #include "shader/include.h"
+#include "shader/levels.h"
 #include "shader/macros.h"
 #include "shader/scan.h"
 
@@ -64,6 +65,7 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   note_loops(scanned.tokens, *source);
   source->keeps_state = scanned.keeps_state;
   source->fixed_alpha_line = fixed_alpha_line(scanned.tokens, info_of(source->interface.kind).entry);
+  source->level_line = level_line(scanned.tokens);
   for (const auto& include : source->includes) {
     AFTERGLOW_TRY(const ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
     note_loops(library.tokens, *source);

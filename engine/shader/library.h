@@ -41,6 +41,8 @@ struct ShaderSource {
   bool keeps_state = false;             ///< it or a library of it has variables at file scope that functions may write
   std::optional<int> fixed_alpha_line;  ///< where it returns an alpha that is a number, if it returns nothing else
 
+  std::optional<int> level_line;  ///< where it asks for a level of an image that may not be 0
+
   std::vector<std::filesystem::path> files() const;  ///< path and those of the includes
 };
 

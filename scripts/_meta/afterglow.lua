@@ -475,7 +475,8 @@
 ---A picture from a file, stretched over the whole picture.
 ---@class afterglow.masks.file : afterglow.MaskKeys
 ---@field file? string|afterglow.OfTime  The picture. default ""
----@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  What of it is the mask; linear. default "luma"
+---@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  What of it is the mask. default "luma"
+---@field raw? boolean|afterglow.OfTime  Its numbers count as they are: a painted grey of 50 % is half. Else they are colours, and that is 0.21 in linear light. default false
 
 ---Colours of a hue: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta.
 ---@class afterglow.masks.hue : afterglow.MaskKeys

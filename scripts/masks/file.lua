@@ -9,10 +9,11 @@ return fx.effect {
   doc = "A picture from a file, stretched over the whole picture.",
   settings = {
     file = fx.file { extensions = { "exr", "png", "tif", "tiff", "hdr", "jpg", "jpeg" }, doc = "The picture." },
-    channel = fx.enum { "r", "g", "b", "a", "luma", default = "luma", doc = "What of it is the mask; linear." },
+    channel = fx.enum { "r", "g", "b", "a", "luma", default = "luma", doc = "What of it is the mask." },
+    raw = fx.bool { default = false, doc = "Its numbers count as they are: a painted grey of 50 % is half. Else they are colours, and that is 0.21 in linear light." },
   },
   active = function(s) return s.file ~= "", "no file is named", true end,
   build = function(g, s, source)
-    return g:pass { shader = "mask/file", size = source, picture = g:image { file = s.file, alpha = s.channel == "a" }, channel = channels[s.channel] }
+    return g:pass { shader = "mask/file", size = source, picture = g:image { file = s.file, alpha = s.channel == "a", raw = s.raw }, channel = channels[s.channel] }
   end,
 }

@@ -45,6 +45,17 @@ TEST_F(Bake, TheTableDoesWhatTheLookDoes) {
   }
 }
 
+TEST_F(Bake, NamesWithQuotationMarksAndOtherCases) {
+  write("named.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { name = 'My \"best\" look', fx.exposure { ev = 1 } }");
+  ASSERT_EQ(run({"bake", "named.lua", "-o", "named.CUBE", "--size", "4"}).exit_code, kDone);
+  EXPECT_THAT(read("named.CUBE"), HasSubstr("\nTITLE \"My 'best' look\"\n"));
+  const Outcome wrong = run({"bake", "nowhere.lua", "-o", "named.xyz"});
+  EXPECT_EQ(wrong.exit_code, kUsage) << "before anything else";
+  EXPECT_THAT(wrong.err,
+              HasSubstr("named.xyz: error: '.xyz' is no format of tables that can be written; allowed: .cube"));
+}
+
 TEST_F(Bake, PicturesAndCodes) {
   const Outcome outcome = run({"bake", "look.lua", "-o", "strip.png", "--size", "16"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;

@@ -94,6 +94,35 @@ TEST_F(Inspect, UnknownNamesInShadersAreToldWithTheNearest) {
   EXPECT_EQ(error("mix(color)"), "'mix': no matching overloaded function found");
 }
 
+TEST_F(Inspect, LevelsOfImagesAreAWarningAndModfIsNone) {
+  write("effects/mine.lua",
+        "return require(\"afterglow\").effect { name = \"mine\", build = function(g, s, image)\n"
+        "return g:pass { shader = \"mine\", source = image } end }");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.mine {} }");
+  const auto told = [&](const std::string& body) {
+    write("shaders/mine.glsl",
+          "uniform sampler2D source;\nvec4 sample_at(ivec2 p) {\n  vec2 at = (vec2(p) + 0.5) / vec2(target_size());\n" +
+              body + "\n}\n");
+    const Outcome outcome = run({"check", "look.lua"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err;
+  };
+  const std::string warning =
+      "shaders/mine.glsl:4: a level of an image that is not 0 is read as level 0: images have one";
+  for (const char* read : {"textureLod(source, at, 5.0)", "texelFetch(source, p, 2)", "texture(source, at, 1.0)",
+                           "textureLod(source, at, at.x)"})
+    EXPECT_THAT(told(std::string("  return ") + read + ";"), HasSubstr(warning)) << read;
+  for (const char* read : {"textureLod(source, at, 0.0)", "texelFetch(source, p, 0)", "texture(source, at)",
+                           "texelFetch(source, p, int(0))"})
+    EXPECT_THAT(told(std::string("  return ") + read + ";"), IsEmpty()) << read;
+  EXPECT_THAT(
+      told("  float whole;\n  float part = modf(at.x, whole);\n  return vec4(whole, part, 0.0, fetch(source, p).a);"),
+      IsEmpty());
+  EXPECT_THAT(told("  float whole;\n  float part = whole;\n  modf(at.x, whole);\n  return vec4(whole, part, 0.0, "
+                   "fetch(source, p).a);"),
+              HasSubstr("'whole' may be read before it has a value"));
+}
+
 TEST_F(Inspect, AMaskThatCanSelectNothingIsAWarning) {
   const auto told = [&](const std::string& mask) {
     write("masked.lua",

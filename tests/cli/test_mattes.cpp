@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Mattes that come as channels, files and ids: which channel is taken, and what is told where it is not there.
+#include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 
 #include <bit>
@@ -142,6 +143,29 @@ TEST_F(CryptomatteManifests, WithoutOneANameThatNoPixelHasIsToldOnce) {
   const auto at = outcome.err.find(told);
   ASSERT_NE(at, std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find("cryptomatte", at + told.size()), std::string::npos) << outcome.err;
+}
+
+// A picture that was painted as a mask: half is half, not the light that the code for half stands for.
+TEST_F(CliTest, PicturesThatAreNumbers) {
+  make_exr("a.exr", 8, 8);
+  OIIO::ImageSpec spec(1, 1, 4, OIIO::TypeUInt8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);  // the numbers go into the file as they are
+  OIIO::ImageBuf grey(spec);
+  const float half = 128.0f / 255, numbers[] = {half, half, half, 51.0f / 255};
+  grey.setpixel(0, 0, numbers);
+  ASSERT_TRUE(grey.write(text("grey.png")));
+  const auto brighter = [&](const std::string& settings) {
+    write("look.lua",
+          "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.file { "
+          "file = \"grey.png\", " +
+              settings + " } } }");
+    const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "b.exr", "--type", "float"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return pixels_of("b.exr")[0] / pixels_of("a.exr")[0] - 1;
+  };
+  EXPECT_NEAR(brighter("channel = \"r\", raw = true"), 128.0 / 255, 1e-5);
+  EXPECT_NEAR(brighter("channel = \"a\", raw = true"), 51.0 / 255, 1e-5);
+  EXPECT_NEAR(brighter("channel = \"r\""), 0.2158605 * 51 / 255, 1e-5) << "light, times alpha";
 }
 
 }  // namespace

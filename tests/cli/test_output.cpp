@@ -96,6 +96,34 @@ TEST_P(FullDisk, LeavesTheOldFileAndNothingElse) {
 INSTANTIATE_TEST_SUITE_P(Cli, FullDisk, ::testing::Values("out.exr", "out.png", "out.hdr"),
                          [](const auto& info) { return std::string(info.param).substr(4); });
 
+// As daemons start programs. What is said must not land in the files that got the numbers of closed streams.
+TEST_F(Output, ClosedStandardStreamsChangeNothing) {
+  for (int frame = 1; frame <= 8; ++frame) make_exr("in/a.000" + std::to_string(frame) + ".exr");
+  write("talks.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = function(t) "
+        "for i = 1, 9 do print(\"said\", t.frame) end return t.frame end } }\n");
+  RunOptions shell;
+  shell.program = "/bin/sh";
+  const auto made = [&](const std::string& folder, const std::string& closed) {
+    const Outcome outcome = run({"-c", std::string("exec '") + AFTERGLOW_PROGRAM +
+                                           "' run talks.lua 'in/a.####.exr' -o " + folder + "/ " + closed},
+                                shell);
+    EXPECT_EQ(outcome.exit_code, kDone) << closed << outcome.err;
+    std::string all;
+    for (int frame = 1; frame <= 8; ++frame) all += read(folder + "/a.000" + std::to_string(frame) + ".exr");
+    return all;
+  };
+  const std::string usual = made("usual", "");
+  for (const char* closed : {"<&-", ">&-", "2>&-", "<&- >&- 2>&-"}) {
+    EXPECT_TRUE(made("closed", closed) == usual) << closed;
+    fs::remove_all(path("closed"));
+  }
+  // A stream that is needed is still missed.
+  const Outcome lost =
+      run({"-c", std::string("exec '") + AFTERGLOW_PROGRAM + "' run talks.lua a.exr -o - --format png >&-"}, shell);
+  EXPECT_EQ(lost.exit_code, kFiles) << lost.err;
+}
+
 TEST_F(Output, ReportThatCannotBeWritten) {
   const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--report", "nowhere/report.json"});
   expect_failure(outcome, "nowhere/report.json");

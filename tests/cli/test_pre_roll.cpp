@@ -59,6 +59,30 @@ TEST_F(PreRoll, ARangeIsAsInTheWhole) {
   EXPECT_THAT(outcome.out, HasSubstr("pre-roll: 3 earlier frames, not written"));
 }
 
+TEST_F(PreRoll, HistoriesThatBeginAnewAreTold) {
+  write("effects/grow.lua", R"(
+local fx = require "afterglow"
+return fx.effect { name = "grow", settings = { steps = fx.int { default = 1, min = 1, max = 9 } }, build = function(g, s, source)
+  local before = g:history { size = { 1, 1 }, pre_roll = 3 }
+  local next = before
+  for i = 1, s.steps do
+    next = g:pass { shader = "back/propagate", before = next, size = { 1, 1 }, frame = g.frame, time = g.frame_time }
+  end
+  g:keep(before, next)
+  return g:pass { shader = "back/show", source = source, before = before }
+end })");
+  const auto told = [&](const std::string& steps) {
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.grow { steps = " + steps + " } }\n");
+    const Outcome outcome = run_into("out");
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(told("2"), Not(HasSubstr("began anew")));
+  EXPECT_THAT(told("function(t) return t.frame > 4 and 2 or 1 end"),
+              HasSubstr("history 'grow.history' began anew once within a sequence: passes that it is made of"));
+  EXPECT_THAT(told("function(t) return t.frame end"), HasSubstr("'grow.history' began anew 7 times within a sequence"));
+}
+
 TEST_F(PreRoll, IsAsLongAsAsked) {
   ASSERT_EQ(run_into("all").exit_code, kDone);
   EXPECT_EQ(run_into("out", {"--frames", "5", "--pre-roll", "2", "--report", "report.json"}).exit_code, kDone);

@@ -115,6 +115,27 @@ TEST_F(Resume, KnowsTheTableOfEachFrame) {
   EXPECT_THAT(from("first/look.lua"), ElementsAre("up to date", "done", "up to date", "done"));
 }
 
+// What comes behind a frame that failed has another history than it would have: it is made again when the frame is
+// there.
+TEST_F(Resume, MakesAgainWhatFollowsAGapInTheHistory) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.auto_exposure {} }\n");
+  const std::string name = "in/shot.0002.exr", good = read(name);
+  const auto time = fs::last_write_time(path(name));
+  const auto put = [&](const std::string& bytes) {
+    write(name, bytes);
+    fs::last_write_time(path(name), time);  // as of a server that was away for a moment
+  };
+  for (const std::string& broken :
+       {std::string(good.size(), 'x'), good.substr(0, 400) + std::string(good.size() - 400, 'x')}) {
+    put(broken);
+    fs::remove(path("out/shot.0002.png"));
+    EXPECT_EQ(run_all().exit_code, kFiles);
+    put(good);
+    EXPECT_THAT(resumed(), ElementsAre("up to date", "done", "done", "done"));
+    EXPECT_THAT(resumed(), ElementsAre("up to date", "up to date", "up to date", "up to date"));
+  }
+}
+
 TEST_F(Resume, ReadsFilesOfAnySize) {
   make_exr("dirt.exr");
   fs::resize_file(path("dirt.exr"), (64u << 20) + 1);  // what lies behind a picture does not matter to it

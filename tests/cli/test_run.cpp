@@ -211,5 +211,46 @@ TEST_F(Run, BrokenCacheIsRebuilt) {
   EXPECT_EQ(read("1.png"), read("2.png"));
 }
 
+/// A filter of both axes with many taps runs one axis after the other: the same sums but for their rounding.
+TEST_F(Run, FiltersOfManyTapsRunAxisByAxis) {
+  write("effects/wide.lua", R"(
+local fx = require "afterglow"
+return fx.effect { name = "wide", settings = { taps = fx.int { default = 9, min = 1, max = 15 }, whole = fx.bool { default = false },
+    small = fx.bool { default = false } },
+  build = function(g, s, source)
+    local x, y, taps = {}, {}, {}
+    for i = 1, s.taps do
+      x[i] = { (i - (s.taps + 1) / 2) * 0.75, i / (s.taps * (s.taps + 1) / 2) }
+      y[i] = { (i - (s.taps + 1) / 2) * 1.5, 1 / s.taps }
+    end
+    for _, a in ipairs(x) do for _, b in ipairs(y) do taps[#taps + 1] = { a[1], b[1], a[2] * b[2] } end end
+    local size = s.small and { source.width - 7, math.ceil(source.height / 2) } or source
+    local image = g:filter { source = source, size = size, filter = s.whole and { taps = taps } or { x = x, y = y } }
+    return s.small and g:filter { source = image, size = source, filter = fx.filters.bilinear() } or image
+  end })");
+  const auto made = [&](const std::string& settings, const std::string& size) {
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.wide { " + settings + " } }\n");
+    const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "b.exr", "--type", "float", "--size", size});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return pixels_of("b.exr");
+  };
+  make_exr("a.exr");
+  for (const char* size : {"64x36", "37x21", "8x3"})
+    for (const char* small : {"", ", small = true"}) {
+      const auto apart = made(std::string("taps = 9") + small, size),
+                 whole = made(std::string("taps = 9, whole = true") + small, size);
+      ASSERT_EQ(apart.size(), whole.size());
+      for (std::size_t i = 0; i < apart.size(); ++i)
+        ASSERT_NEAR(apart[i], whole[i], 4e-6 * std::max(1.0F, whole[i])) << size << small << " at " << i;
+    }
+  const auto passes = [&](const std::string& settings) {
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.wide { " + settings + " } }\n");
+    return run({"graph", "look.lua", "--format", "dot"}).out;
+  };
+  EXPECT_THAT(passes("taps = 9"), HasSubstr("wide.filter.x"));
+  EXPECT_THAT(passes("taps = 5"), Not(HasSubstr("wide.filter.")));
+  EXPECT_THAT(passes("taps = 9, whole = true"), Not(HasSubstr("wide.filter.")));
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -186,5 +186,22 @@ TEST_F(Sequence, CtrlCEndsWith130AndNoPartialFile) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(all.begin(), all.end(), "up to date")), made.size());
 }
 
+// Looks are asked in the size of the pictures, not in one that nobody has.
+TEST_F(Sequence, LooksAreAskedInTheSizeOfThePictures) {
+  write("effects/small.lua",
+        "return require(\"afterglow\").effect { name = \"small\", build = function(g, s, source)\n"
+        "if source.width ~= 64 and source.width ~= 32 then error(\"asked for \" .. source.width) end\n"
+        "return g:filter { source = source, size = source, filter = require(\"afterglow\").filters.tent() } end }");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.small { opacity = function(t) return t.frame / 4 end } "
+        "}");
+  EXPECT_EQ(run_all().exit_code, kDone) << run_all().err;
+  EXPECT_EQ(run_all({"--resume"}).exit_code, kDone);
+  EXPECT_EQ(run_all({"--lock", "look.lock"}).exit_code, kDone);
+  EXPECT_EQ(run_all({"--size", "50%"}).exit_code, kDone) << run_all({"--size", "50%"}).err;
+  write("in/shot.0001.exr", "broken");
+  EXPECT_THAT(run_all().err, Not(HasSubstr("asked for")));
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -167,6 +167,18 @@ def test_a_message_function_must_not_use_its_own_stack(folder, device):
     assert stack.report()["kernels"]
 
 
+def test_ctrl_c_in_a_message_function_reaches_the_program(folder, device, monkeypatch):
+    def message(level, text):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sys, "unraisablehook", lambda what: None)
+    stack = afterglow.Stack(folder / "look.lua", device=device, message=message)
+    with pytest.raises(KeyboardInterrupt):
+        stack.run(np.full((1, 1, 3), np.nan, np.float32))
+        for _ in range(1000):  # it comes at the next instruction that looks for signals
+            pass
+
+
 @pytest.mark.parametrize("said", [r"caf\xe9", r"\xed\xa0\x80", r"\xf0\x9f"])
 def test_texts_that_are_no_utf8(device, said):
     told = []

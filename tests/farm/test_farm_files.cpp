@@ -2,8 +2,10 @@
 // Jobs without a cluster: what is written, what other schedulers get, what is refused.
 #include <algorithm>
 #include <fstream>
+#include <future>
 #include <tuple>
 
+#include "core/file.h"
 #include "core/temporary.h"
 #include "farm/attempt.h"
 #include "farm/slurm.h"
@@ -294,6 +296,51 @@ TEST(FarmText, FramesAreReadBackAsTheyWere) {
   }
   EXPECT_EQ(farm::frames_text({1, 2, 3, 4}), "1-4");
   EXPECT_EQ(farm::frames_text({1, 3, 5}), "1-5x2");
+}
+
+/// Programs of Slurm's that a test writes, in the place of real ones.
+class FakeSlurm : public FarmTest {
+ protected:
+  void SetUp() override {
+    FarmTest::SetUp();
+    make_frames("in", 1, 4);
+    make_look_back();
+    fs::create_directory(path("out"));
+    program("scontrol", "echo 'MaxArraySize = 1001'");
+    program("scancel", "echo \"$@\" >>\"$(dirname \"$0\")/cancelled\"");
+    program("squeue", "");
+  }
+  void program(const std::string& name, const std::string& text) const {
+    write("slurm/" + name, "#!/bin/sh\n" + text + "\n");
+    fs::permissions(path("slurm/" + name), fs::perms::owner_all);
+  }
+  RunOptions with_fakes() const {
+    RunOptions options;
+    options.environment["PATH"] = text("slurm") + ":/usr/bin:/bin";
+    return options;
+  }
+};
+
+TEST_F(FakeSlurm, SubmissionsAtOnceLoseNoArray) {
+  program("sbatch", "sleep 0.2; echo $$");
+  ASSERT_EQ(run({"farm", "look.lua", "in/shot.####.exr", "-o", "out/"}, with_fakes()).exit_code, kDone);
+  const std::string job = job_of("out").string();
+  auto other = std::async(std::launch::async, [&] { return run({"farm", "retry", job}, with_fakes()); });
+  const Outcome mine = run({"farm", "retry", job}, with_fakes());
+  EXPECT_EQ(other.get().exit_code, kDone);
+  EXPECT_EQ(mine.exit_code, kDone) << mine.err;
+  EXPECT_EQ(nlohmann::json::parse(*read_file(job + "/slurm.json")).at("arrays").size(), 3u);
+  ASSERT_EQ(run({"farm", "cancel", job}, with_fakes()).exit_code, kDone);
+  const std::string cancelled = read("slurm/cancelled");
+  EXPECT_EQ(std::ranges::count(cancelled, '\n'), 3) << cancelled;
+}
+
+TEST_F(FakeSlurm, AccountingIsAskedOnTheJobsCluster) {
+  program("sbatch", "echo '123;alpha'");
+  program("sacct", "case \"$*\" in *--clusters=alpha*) ;; *) echo '123_0|TIMEOUT|stranger' ;; esac");
+  ASSERT_EQ(run({"farm", "look.lua", "in/shot.####.exr", "-o", "out/"}, with_fakes()).exit_code, kDone);
+  const Outcome status = run({"farm", "status", job_of("out").string()}, with_fakes());
+  EXPECT_THAT(status.out + status.err, Not(HasSubstr("stranger")));
 }
 
 TEST(FarmText, ArraysStayBelowTheLargest) {

@@ -4,6 +4,7 @@
 
 #include "batch/lock.h"
 #include "batch/resume.h"
+#include "core/file_stamp.h"
 #include "core/paths.h"
 #include "temporary_folder.h"
 
@@ -45,6 +46,29 @@ TEST(Notes, AreOfTheFilesThatWereRead) {
   const Noted after = noted(*again);
   EXPECT_NE(after.look, before.look);
   EXPECT_NE(after.lock, before.lock);
+}
+
+/// Another run may have replaced the output before its note is written: it vouches for what this run wrote.
+TEST(Notes, AreOfTheOutputThatWasWritten) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "look.lua") << "return require(\"afterglow\").stack {}\n";
+  std::ofstream(folder / "in.png") << "input";
+  Diagnostics nowhere;
+  ShaderLibrary shaders(search_path_for(folder / "look.lua", {}));
+  auto preset = Preset::load(folder / "look.lua", {}, shaders, nowhere);
+  ASSERT_TRUE(preset) << preset.error().text();
+  FrameNotes notes(Hash{1, 2}, *preset);
+  FrameJob job;
+  job.input = folder / "in.png";
+  job.output = folder / "out.png";
+  job.made_of = notes.text(notes.inputs_of(job), {});
+  std::ofstream(job.output) << "ours";
+  const std::string ours = file_stamp(job.output);
+  ASSERT_TRUE(record_made(job, ours));
+  EXPECT_TRUE(notes.is_up_to_date(job));
+  std::ofstream(job.output) << "theirs, meanwhile";
+  ASSERT_TRUE(record_made(job, ours));
+  EXPECT_FALSE(notes.is_up_to_date(job));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <gmock/gmock.h>
 
+#include <csignal>
+
 #include "core/process.h"
 
 namespace afterglow {
@@ -43,6 +45,15 @@ TEST(Process, HowItEnded) {
   EXPECT_EQ(failed->text(), "ended with exit code 4");
   EXPECT_EQ(killed->code, 128 + 9);
   EXPECT_EQ(killed->text(), "was ended by signal 9");
+}
+
+// Programs expect to end when nobody reads what they say, whatever we do ourselves.
+TEST(Process, HearsTheSignalsThatWeIgnore) {
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  const auto end = shell("sed -n 's/^SigIgn:.//p' /proc/self/status");
+  std::signal(SIGPIPE, before);
+  ASSERT_TRUE(end) << end.error().text();
+  EXPECT_EQ(std::stoull(end->out, nullptr, 16) >> (SIGPIPE - 1) & 1, 0u) << end->out;
 }
 
 TEST(Process, WhatCannotBeStarted) {

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <fstream>
+#include <future>
+#include <thread>
 
 #include "core/file.h"
 #include "edit/write_back.h"
@@ -400,6 +403,25 @@ TEST_F(WriteBack, SavesOfFilesThatChangedAreRefused) {
   EXPECT_THAT(saved.error().text(), HasSubstr("was changed by something else in the meantime; nothing was written"));
   EXPECT_THAT(*read_file(file()), HasSubstr("knee = 0.2"));
   EXPECT_EQ(writer.saves(), 0u);
+}
+
+// Two who have planned on the same text: the second to save is told so.
+TEST_F(WriteBack, OfTwoSavesAtOnceOneIsRefused) {
+  for (int round = 0; round < 20; ++round) {
+    scene.stack("fx.glow { knee = 0.1, amount = 0.1 }");
+    PresetWriter a(file(), scene.options), b(file(), scene.options);
+    const auto of_a = a.plan({{"glow", "knee", number(0.9)}}), of_b = b.plan({{"glow", "amount", number(0.9)}});
+    ASSERT_TRUE(of_a && of_b);
+    std::atomic<int> ready = 0;
+    const auto save = [&](PresetWriter& writer, const Rewrite& rewrite) {
+      ++ready;
+      while (ready < 2) std::this_thread::yield();
+      return writer.save(rewrite).ok();
+    };
+    auto other = std::async(std::launch::async, [&] { return save(a, *of_a); });
+    const bool mine = save(b, *of_b);
+    EXPECT_NE(other.get(), mine) << round;
+  }
 }
 
 TEST_F(WriteBack, UndoTakesBackSaveBySave) {

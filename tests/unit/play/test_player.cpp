@@ -178,6 +178,41 @@ TEST_F(PlayerTest, AFrameThatCannotBeReadSaysSoAndPlayingGoesOn) {
   EXPECT_EQ(player.stats().shown, 2u);
 }
 
+TEST_F(PlayerTest, AnUnreadableFrameIsToldOnceAndEditsShowOnThePictureBefore) {
+  write_sequence(3);
+  std::ofstream(path("s.2.exr")) << "broken";
+  Player& player = open();
+  turn();
+  player.transport().play(seconds_);
+  seconds_ += 0.1;
+  EXPECT_TRUE(turn().changed);
+  player.transport().pause(seconds_);
+  EXPECT_FALSE(turn().changed);
+  write_look("look.lua", 2);
+  EXPECT_TRUE(reload().changed);
+  EXPECT_FLOAT_EQ(result(), 0.5f);
+  EXPECT_TRUE(player.shown().unreadable);
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(turn().changed) << i;
+  EXPECT_EQ(player.stats().unreadable, 1u);
+}
+
+TEST_F(PlayerTest, ASecondLookThatFailsIsRunOnce) {
+  write_sequence(2);
+  write("other.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = function(t) "
+        "if t.frame > 1 then error(\"not this one\") end return 1 end } }\n");
+  PlayerOptions options;
+  options.other_preset = path("other.lua");
+  Player& player = open(options);
+  player.view().compare = Compare::other;
+  turn();
+  player.transport().step(1, seconds_);
+  EXPECT_TRUE(turn().changed);
+  ASSERT_TRUE(player.shown().failed);
+  EXPECT_THAT(player.shown().failed->text(), HasSubstr("not this one"));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(turn().changed) << i;
+}
+
 TEST_F(PlayerTest, PicturesThatAreReadAgainAreShownWhenTheyCome) {
   write_sequence(1);
   Player& player = open();

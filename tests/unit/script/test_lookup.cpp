@@ -135,7 +135,8 @@ TEST(ListEffects, AllOfThePathByName) {
   EXPECT_THAT(names, testing::Not(testing::Contains("broken")));
   EXPECT_THAT(
       scene.warnings,
-      ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
+      ElementsAre("effects/not an effect.lua is left out: the name of an effect has letters, digits and '_' alone",
+                  "effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
                   "'odrer'; allowed: active, alpha, at, build, "
                   "detail, doc, holds, idle, name, needs, optional, order, settings, space; did you mean 'order'?"));
 }

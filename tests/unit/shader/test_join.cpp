@@ -263,7 +263,7 @@ TEST_F(Join, WrongKindsAndTooManyImagesAreRefused) {
   const auto many = files_.stage("m", "vec4 apply(vec4 c, vec4 a, vec4 b, vec4 d, vec4 e) { return a + b + d + e; }\n");
   EXPECT_EQ(outcome(join({many, many, many})), "ok");
   EXPECT_THAT(outcome(join({many, many, many, many})),
-              HasSubstr("the fused passes read 17 images; allowed: at most 16"));
+              HasSubstr("pass 'm' reads 17 images, with its source; allowed: at most 16"));
 }
 
 TEST_F(Join, ConstantsThatDoNotFitAreRefused) {
