@@ -321,7 +321,7 @@ typedef struct afterglow_run_info {
   afterglow_image source;
   /* As large as the source; floats or halves. depth: distance in units of the scene, or device depth as the preset's
    * settings say; normal: x, y, z; motion: the way from where the content of a pixel is to where it was a frame ago, in
-   * pixels, x to the right and y down (taa has a setting for the other way round). */
+   * pixels, x to the right and y down (effects may have a setting for the other way round). */
   afterglow_image depth, normal, motion;
   /* As large as the source. May be the source itself, with the same samples and strides. */
   afterglow_image result;

@@ -14,7 +14,6 @@
 #include "graph/condition.h"
 #include "graph/history.h"
 #include "graph/region.h"
-#include "shader/unknown_name.h"
 
 namespace afterglow {
 
@@ -91,7 +90,7 @@ ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, c
         found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
         return {};
       };
-      if (auto good = check(); !good) found.errors.push_back(with_known_names(std::move(good).error(), shaders.path()));
+      if (auto good = check(); !good) found.errors.push_back(shaders.with_known_names(std::move(good).error()));
     }
   }
   return found;
@@ -180,7 +179,7 @@ Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
     entries.erase(std::next(entries.begin()), entries.end());
     made = create();
   }
-  if (!made) return with_known_names(std::move(made).error(), shaders.path());
+  if (!made) return shaders.with_known_names(std::move(made).error());
   entry.program = std::move(made).value();
   if (options.diagnostics)
     for (const auto& warning : entry.program->warnings()) options.diagnostics->warn_once(warning, warning);

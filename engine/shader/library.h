@@ -56,6 +56,10 @@ class ShaderLibrary {
   /// line are those of the offending text.
   Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
 
+  /// The compiler's error of an unknown function or variable, with the library below shaders/lib/ that has it, or with
+  /// the nearest of the names that its file knows. Other errors come back as they are. Reads files of the search path.
+  Error with_known_names(Error error) const;
+
   void reload();                 ///< forget everything read so far
   void search(SearchPath path);  ///< from now on; what was read stays. Not while others use the library
   const SearchPath& path() const { return path_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shader/unknown_name.h"
+// What authors may have meant by a name that a compiler does not know.
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "shader/builtins.h"
 #include "shader/include.h"
+#include "shader/library.h"
 #include "shader/scan.h"
 
 namespace afterglow {
@@ -72,12 +73,12 @@ std::string library_with(const std::string& name, const SearchPath& path) {
 
 }  // namespace
 
-Error with_known_names(Error error, const SearchPath& path) {
+Error ShaderLibrary::with_known_names(Error error) const {
   const std::string name = unknown_name(error.message);
   if (name.empty() || error.file.empty()) return error;
-  const auto known = names_known_to(error.file, path);
+  const auto known = names_known_to(error.file, path_);
   if (!known || has(known->defined, name) || is_builtin_function(name) || is_prelude_function(name)) return error;
-  if (const std::string library = library_with(name, path); !library.empty()) {
+  if (const std::string library = library_with(name, path_); !library.empty()) {
     error.message = fmt::format("'{}' is not known here; {} has it: #include \"{}\"", name, library, library);
     return error;
   }

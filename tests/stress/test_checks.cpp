@@ -37,7 +37,7 @@ const BadEffect kBad[] = {
      {64, 64}},
     {"idle", "vec4 apply(vec4 color) { return vec4(color.rgb * 0.5, color.a); }"},
     {"rebuilt", "vec4 apply(vec4 color) { return vec4(color.rgb * strength, color.a); }", "",
-     "strength = (function() made = (made or 0) + 1 return 1 / made end)()"},
+     "strength = (function() made = (rawget(_ENV, 'made') or 0) + 1 return 1 / made end)()"},
     {"black", "vec4 apply(vec4 color) { return vec4(color.rgb + 1e-6, color.a); }", "\"black\""},
     {"constant", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }",
      "\"constant\""},
