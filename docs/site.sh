@@ -20,6 +20,7 @@ pages=(
   "docs/player.md|The player"
   "docs/video.md|Videos"
   "docs/writing_effects.md|Writing an effect"
+  "docs/shader_library.md|The shader library"
   "docs/tone_mapping.md|Tone curves"
   "docs/alpha.md|Soft edges"
   "docs/ocio.md|OpenColorIO"

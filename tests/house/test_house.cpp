@@ -241,5 +241,30 @@ TEST(House, PresetsNameTheOldestProgramThatRunsThem) {
   EXPECT_GE(presets, 15);
 }
 
+/// Every library is on the page, and every function that the page names is in one of them.
+TEST(House, ThePageOfTheShaderLibraryIsTrue) {
+  const std::string page = read_file(kProject / "docs" / "shader_library.md").value();
+  std::string libraries;
+  int files = 0;
+  for (const auto& file : files_below(kProject / "shaders" / "lib", {".glsl"})) {
+    libraries += " " + read_file(file).value();
+    if (file.stem() == "prelude") continue;
+    ++files;
+    EXPECT_NE(page.find("`lib/" + file.filename().string() + "`"), std::string::npos) << file;
+  }
+  EXPECT_GT(files, 20);
+  int functions = 0;
+  for (std::size_t at = page.find('('); at != std::string::npos; at = page.find('(', at + 1)) {
+    std::size_t begin = at;
+    while (begin > 0 && (std::isalnum(static_cast<unsigned char>(page[begin - 1])) || page[begin - 1] == '_')) --begin;
+    if (begin == at || page[begin - 1] != '`') continue;
+    const std::string name = page.substr(begin, at - begin);
+    if (name == "texture" || name.find("NAME") != std::string::npos) continue;
+    ++functions;
+    EXPECT_NE(libraries.find(" " + name + "("), std::string::npos) << name;
+  }
+  EXPECT_GT(functions, 40);
+}
+
 }  // namespace
 }  // namespace afterglow
