@@ -32,6 +32,7 @@ struct BatchRun {
   std::unique_ptr<FrameSink> sink{};
   std::unique_ptr<Session> session{};
   FrameList list{};
+  std::optional<PictureHeader> first{};  ///< of the first picture that can be read; none: nothing has to be known of it
   std::optional<FrameNotes> notes{};
   std::optional<Lock> lock{};  ///< of what runs, when one is to be written or held against
 
@@ -72,7 +73,7 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
   Preset& preset = run.session->preset();
   const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
   std::optional<int> most;
-  const Size size = frames.size() == 1 ? kUsualSize : loop.usual_size(frames);
+  const Size size = run.first ? loop.size_of(*run.first) : kUsualSize;
   for (std::size_t i = 0; i < asked; ++i) {
     const double frame = frames[i * frames.size() / asked].job.frame;
     const BuildContext context = usual_context(preset, size, frame, run.request.loop.fps);
@@ -87,14 +88,17 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
   return most;
 }
 
+std::vector<const FrameJob*> jobs_of(const FrameRecords& frames, std::size_t most) {
+  std::vector<const FrameJob*> jobs;
+  for (std::size_t i = 0; i < std::min(most, frames.size()); ++i) jobs.push_back(&frames[i].job);
+  return jobs;
+}
+
 /// What the look is made of in these frames.
 Result<Inventory> inventory_of(BatchRun& run, std::size_t frames) {
-  std::vector<const FrameJob*> jobs;
-  for (const auto& frame : run.report.frames) jobs.push_back(&frame.job);
-  const Size size = size_of_first(jobs);
-  jobs.resize(std::min(frames, jobs.size()));
+  const auto jobs = jobs_of(run.report.frames, frames);
   Preset& preset = run.session->preset();
-  return take_inventory(preset, usual_contexts(preset, jobs, run.request.loop.fps, size), run.events.diagnostics);
+  return take_inventory(preset, usual_contexts(preset, jobs, run.request.loop.fps, run.first), run.events.diagnostics);
 }
 
 bool takes_notes(const BatchRun& run) {
@@ -182,7 +186,10 @@ Result<void> run_frames(BatchRun& run) {
   AFTERGLOW_TRY(run.session, Session::begin(asked.preset, opened, run.events.diagnostics));
   // Of a picture alone nothing is asked that needs the device before it is being read.
   const bool alone = opened.frames == 1 && !asked.resume && !asked.watch && asked.lock.empty() && asked.locked.empty();
-  if (!alone) AFTERGLOW_CHECK(run.session->ready());
+  if (!alone) {
+    AFTERGLOW_CHECK(run.session->ready());
+    run.first = first_header(jobs_of(frames, frames.size()), asked.loop.read);
+  }
   FrameLoopOptions options = asked.loop;
   options.read.auxiliary = run.session->preset().needs();
   options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;

@@ -39,7 +39,7 @@ class FrameLoop {
   /// Errors: those of reading the header and of the script.
   Result<std::shared_ptr<const Build>> inspect(const FrameJob& job);
   /// See FramePlanner.
-  Size usual_size(const FrameRecords& frames) const { return planner_.usual_size(frames); }
+  Size size_of(const PictureHeader& header) const { return planner_.size_of(header); }
   /// Pictures depend on the frames before them: see FrameLoopOptions.
   void follow_histories() { options_.histories = true; }
   /// Each frame gets its FrameJob::made_of. `notes` outlives the loop.

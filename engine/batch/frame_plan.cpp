@@ -103,16 +103,6 @@ FramePlanner::Shape FramePlanner::shape_of(const PictureHeader& header) const {
   return shape;
 }
 
-Size FramePlanner::usual_size(const FrameRecords& frames) const {
-  constexpr std::size_t kMostAsked = 8;
-  for (std::size_t i = 0; i < std::min(frames.size(), kMostAsked); ++i) {
-    const FrameJob& job = frames[i].job;
-    if (job.passing) continue;  // its header comes with its pixels
-    if (const auto header = read_header(job.input, read_options(job))) return shape_of(*header).size();
-  }
-  return kUsualSize;
-}
-
 /// What is wanted of the picture with this header.
 Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const PictureHeader& header, double step,
                                               bool restart) {

@@ -6,8 +6,6 @@
 #include <optional>
 
 #include "batch/frame_sink.h"
-#include "batch/inventory.h"
-#include "batch/run_report.h"
 #include "image/reader.h"
 #include "image/scale.h"
 #include "image/writer.h"
@@ -75,8 +73,8 @@ class FramePlanner {
   /// Errors: io (above --max-memory).
   Result<FrameNeed> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::uint64_t largest_need() const { return largest_need_; }
-  /// In which the look runs on the first of the frames whose header can be read; where there is none, kUsualSize.
-  Size usual_size(const FrameRecords& frames) const;
+  /// In which the look runs on a picture with this header.
+  Size size_of(const PictureHeader& header) const { return shape_of(header).size(); }
 
  private:
   /// Of what the look runs on: `finer` times the windows on each side.

@@ -10,7 +10,6 @@
 #include "core/file.h"
 #include "core/made_shaders.h"
 #include "core/parse_number.h"
-#include "image/reader.h"
 
 namespace afterglow {
 namespace {
@@ -93,21 +92,24 @@ Result<Inventory> take_inventory(Preset& preset, const std::vector<BuildContext>
   return out;
 }
 
-Size size_of_first(const std::vector<const FrameJob*>& jobs) {
+std::optional<PictureHeader> first_header(const std::vector<const FrameJob*>& jobs, ReadOptions options) {
   constexpr std::size_t kMostAsked = 8;
   for (std::size_t i = 0; i < std::min(jobs.size(), kMostAsked); ++i) {
-    ReadOptions options;
     options.movie = jobs[i]->movie;
     options.movie_frame = jobs[i]->movie_frame;
     if (jobs[i]->passing) continue;  // its header comes with its pixels
-    if (const auto header = read_header(jobs[i]->input, options)) return header->data_window.size();
+    auto header = read_header(jobs[i]->input, options);
+    if (!header) continue;
+    header->opened.reset();
+    return std::move(header).value();
   }
-  return kUsualSize;
+  return std::nullopt;
 }
 
 std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
-                                         Size size) {
+                                         const std::optional<PictureHeader>& first) {
   std::vector<BuildContext> out;
+  const Size size = first ? first->data_window.size() : kUsualSize;
   for (const FrameJob* job : jobs) {
     out.push_back(usual_context(preset, size, job->frame, job->fps > 0 ? job->fps : fps));
     out.back().time = job->time.value_or(job->frame / fps);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "core/diagnostics.h"
 #include "core/hash.h"
 #include "core/result.h"
+#include "image/reader.h"
 #include "script/build.h"
 
 namespace afterglow {
@@ -36,11 +38,11 @@ Result<Inventory> take_inventory(Preset& preset, const std::vector<BuildContext>
 
 inline constexpr Size kUsualSize{1920, 1080};  ///< of pictures whose size nobody knows
 
-/// Of the first of these whose header can be read; where there is none, kUsualSize.
-Size size_of_first(const std::vector<const FrameJob*>& jobs);
-/// The frames as they usually are: see usual_context.
+/// Of the first of these whose header can be read; nothing of it stays open.
+std::optional<PictureHeader> first_header(const std::vector<const FrameJob*>& jobs, ReadOptions options);
+/// The frames as they usually are, in the size of the first: see usual_context.
 std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
-                                         Size size);
+                                         const std::optional<PictureHeader>& first);
 
 /// Hashes of files, each read once. Of those that the preset has read it is what it read then, whatever lies there by
 /// now.

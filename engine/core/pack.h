@@ -29,9 +29,9 @@ bool is_safe_entry(const std::string& name, std::size_t depth);
 bool is_zip(const std::filesystem::path& path);
 
 /// Folder with the content of a zip: `cache`/packs/HASH/NAME.zip with the hash of name and content, unpacked when it is
-/// not there whole. Appears whole or not at all; any number of processes may do it at once. A folder around all
-/// of it, as of a folder that was zipped, is left out. Errors (script, the zip
-/// named): no zip, limits, names that climb out, links, encryption, damage; io: the cache cannot be written.
+/// not there whole. A folder around all of it, as of a folder that was zipped, is left out. Appears whole or not at
+/// all; any number of processes may do it at once. Errors (script, the zip named): no zip, limits, names that climb
+/// out, links, encryption, damage; io: the cache cannot be written.
 Result<std::filesystem::path> open_zip(const std::filesystem::path& zip, const std::filesystem::path& cache,
                                        const PackLimits& limits = {});
 

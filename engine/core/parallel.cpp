@@ -27,7 +27,7 @@ std::size_t processors() {
   return known;
 }
 
-/// A thread that hears no signals: those are the host's matter, and its threads'. Nor does its locale matter.
+/// A thread that hears no signals: those are the host's matter, and its threads'.
 template <class Work>
 std::thread quiet_thread(Work work) {
   sigset_t all, before;
@@ -37,10 +37,7 @@ std::thread quiet_thread(Work work) {
     const sigset_t& before;
     ~Restore() { pthread_sigmask(SIG_SETMASK, &before, nullptr); }
   } restore{before};
-  return std::thread([work = std::move(work)] {
-    const PlainLocale plain;
-    work();
-  });
+  return std::thread(std::move(work));
 }
 
 /// A loop on its caller's thread, which others help with.
@@ -55,6 +52,7 @@ struct Loop {
 
 /// What each of a loop's threads does; `mutex` is for its failure.
 void work_on(Loop& loop, std::mutex& mutex) {
+  const PlainLocale plain;
   try {
     for (std::size_t i = loop.next++; i < loop.count; i = loop.next++) loop.work(i);
   } catch (...) {
@@ -188,10 +186,7 @@ void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& w
     others.reserve(threads);
     for (std::size_t i = 1; i < threads; ++i) {
       try {
-        others.emplace_back([&run] {
-          const PlainLocale plain;
-          run();
-        });
+        others.emplace_back(run);
       } catch (const std::system_error&) {
         break;  // no more threads to be had: those that run do the work
       }

@@ -46,11 +46,12 @@ Result<Loaded> load(const fs::path& file, const PresetOptions& options, Diagnost
   return out;
 }
 
-Result<Inventory> inventory_of(Preset& preset, const std::vector<FrameJob>& frames, double fps,
+Result<Inventory> inventory_of(Preset& preset, const std::vector<FrameJob>& frames, const FrameLoopOptions& loop,
                                Diagnostics& diagnostics, const EachBuild& each = {}) {
   std::vector<const FrameJob*> jobs;
   for (const auto& frame : frames) jobs.push_back(&frame);
-  return take_inventory(preset, usual_contexts(preset, jobs, fps, size_of_first(jobs)), diagnostics, each);
+  return take_inventory(preset, usual_contexts(preset, jobs, loop.fps, first_header(jobs, loop.read)), diagnostics,
+                        each);
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ Result<LoadedLook> load_look(const BatchRequest& request, const std::vector<Fram
     if (!build.graph.histories.empty())
       out.pre_roll = std::max(out.pre_roll.value_or(0), request.pre_roll.value_or(pre_roll(build.graph)));
   };
-  AFTERGLOW_TRY(const Inventory inventory, inventory_of(preset, frames, request.loop.fps, diagnostics, each));
+  AFTERGLOW_TRY(const Inventory inventory, inventory_of(preset, frames, request.loop, diagnostics, each));
   out.environment = inventory.depends.environment;
   const fs::path& installation = preset.path().installation;
   std::error_code ec;
@@ -115,7 +116,7 @@ Result<void> lock_packed_look(const BatchRequest& request, const std::vector<Fra
                               Job& job, Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Loaded look, load(request.preset, request.session.stack.preset, diagnostics));
   Preset& preset = *look.preset;
-  AFTERGLOW_TRY(const Inventory inventory, inventory_of(preset, frames, request.loop.fps, diagnostics));
+  AFTERGLOW_TRY(const Inventory inventory, inventory_of(preset, frames, request.loop, diagnostics));
   AFTERGLOW_TRY(const Lock lock, look_lock(preset, request.preset, inventory, request.pixel_options));
   if (!locked.empty()) {
     AFTERGLOW_TRY(const Lock given, read_lock(locked));

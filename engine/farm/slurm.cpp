@@ -48,8 +48,8 @@ Result<std::string> output_of(const std::vector<std::string>& words) {
 }
 
 /// Words that are for one cluster, where there are several.
-void add_cluster(std::vector<std::string>& words, const SlurmArray& array) {
-  if (!array.cluster.empty()) words.push_back("--clusters=" + array.cluster);
+void add_cluster(std::vector<std::string>& words, const std::string& cluster) {
+  if (!cluster.empty()) words.push_back("--clusters=" + cluster);
 }
 
 /// Position of an array among those submitted; none: it is not of this job.
@@ -133,7 +133,7 @@ Result<std::vector<std::string>> arrays_before_the_join(const Job& job, const Su
     for (const SlurmArray& array : all.arrays) {
       if (array.id != state.array) continue;
       std::vector<std::string> words{"scancel", "--quiet", array.id};
-      add_cluster(words, array);
+      add_cluster(words, array.cluster);
       static_cast<void>(run_process(words));
     }
   }
@@ -295,7 +295,7 @@ Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks
     if (printed && noted) continue;
     for (std::size_t i = before; i < all.arrays.size(); ++i) {
       std::vector<std::string> words{"scancel", all.arrays[i].id};
-      add_cluster(words, all.arrays[i]);
+      add_cluster(words, all.arrays[i].cluster);
       static_cast<void>(run_process(words));
     }
     return printed ? std::move(noted).error() : std::move(printed).error();
@@ -312,7 +312,7 @@ Result<void> cancel(const Job& job) {
   AFTERGLOW_CHECK(write_submissions(job, all));
   for (const auto& array : all.arrays) {
     std::vector<std::string> words{"scancel", "--quiet", array.id};
-    add_cluster(words, array);
+    add_cluster(words, array.cluster);
     AFTERGLOW_TRY(const ProcessEnd ended, run_process(words));
     // An array that Slurm has forgotten has ended.
     if (ended.code != 0 && ended.err.find("Invalid job id") == std::string::npos)
@@ -348,12 +348,12 @@ Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissi
     std::vector<std::string> words{"squeue", "--noheader", "--array", "--states=all", "--format=%F|%K|%T|%N|%r"};
     // A single array that Slurm has forgotten is an error, a list of them is not.
     words.push_back("--jobs=" + ids + "," + ids);
-    if (!cluster.empty()) words.push_back("--clusters=" + cluster);
+    add_cluster(words, cluster);
     AFTERGLOW_TRY(const std::string text, output_of(words));
     states.merge(states_of_queue(text, submissions));
     std::vector<std::string> asked{
         "sacct", "--noheader", "--parsable2", "--allocations", "--format=JobID,State,NodeList", "--jobs=" + ids};
-    if (!cluster.empty()) asked.push_back("--clusters=" + cluster);
+    add_cluster(asked, cluster);
     const auto accounted = run_process(asked);
     if (accounted && accounted->code == 0) states.merge(states_of_accounting(accounted->out, submissions));
   }
