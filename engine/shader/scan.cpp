@@ -16,6 +16,7 @@
 #include "shader/directives.h"
 #include "shader/entry_point.h"
 #include "shader/foreign_words.h"
+#include "shader/qualifiers.h"
 #include "shader/workgroup.h"
 
 namespace afterglow {
@@ -52,8 +53,9 @@ class ShaderScanner {
                     "'discard' is not allowed: every pixel of an image gets a value; return the colour that came in");
       if (const auto why = why_not(token.text); token.is_identifier() && !why.empty())
         return fail(token, fmt::format("'{}' is not allowed: {}", token.text, why));
-      if (token.directive < 0) code_.push_back(&token);
     }
+    code_tokens_ = code_tokens(out_.tokens);
+    for (const auto& token : code_tokens_) code_.push_back(&token);
     AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));
     for (const auto& macro : directives.macros) AFTERGLOW_CHECK(add_name(macro, true));
     out_.includes = std::move(directives.includes);
@@ -458,7 +460,8 @@ class ShaderScanner {
   const std::string& file_;
   const ScanAs as_;
   ShaderScan out_;
-  std::vector<const Token*> code_;  ///< tokens that are not of the preprocessor
+  std::vector<Token> code_tokens_;
+  std::vector<const Token*> code_;  ///< tokens that are not of the preprocessor, with qualifiers as they are meant
   std::size_t at_ = 0;              ///< index into code_
   std::size_t begin_ = 0;           ///< where the declaration begins
   std::set<std::string> constant_ids_, input_names_, seen_;

@@ -143,6 +143,18 @@ TEST_F(Join, AMacroOfOneShaderDoesNotReachTheNext) {
             "ok");
 }
 
+TEST_F(Join, MacrosOfQualifiersStayWhereTheyAre) {
+  const std::string text =
+      "#define static\n#define PARAMETER uniform\n#define INLINE\n#define FIXED const\n"
+      "static const float kGain = 0.5;\nINLINE static PARAMETER float amount;\n"
+      "layout(constant_id = 0) FIXED int count = 2;\nINLINE FIXED float kHalf[2] = float[](0.5, 0.5);\n"
+      "INLINE float half_of(FIXED float x) { return x * kHalf[1]; }\n"
+      "INLINE vec4 apply(vec4 c) { static FIXED float gain = kGain; return c * half_of(gain) * amount; }\n";
+  EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
+  EXPECT_THAT(outcome(join({files_.stage("c", text + "float late = wrong;\n")})),
+              HasSubstr("c.glsl:11: error: 'wrong'"));
+}
+
 TEST_F(Join, FieldsAndSwizzlesKeepTheirNames) {
   const std::string text = R"(struct Pair { float xy; vec2 rgb[2]; } ;
 float xy(float rgb) { return rgb; }

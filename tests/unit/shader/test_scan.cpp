@@ -115,6 +115,42 @@ vec4 apply(vec4 color) { return color * helper(HALF); }
   EXPECT_EQ(scan.includes[0].line, 1);
 }
 
+TEST(Scan, MacrosOfQualifiersAreReadAsWhatTheyStandFor) {
+  const auto scan = scanned(R"(#define static
+#define CONSTANT const
+#define FIXED static CONSTANT
+#define INLINE
+#define PARAMETER uniform
+#define OUT out
+static const float kFirst = 0.5;
+CONSTANT vec3 kSecond[2] = vec3[](vec3(1.0), vec3(0.0));
+FIXED float kThird = 0.5, kFourth = 1.0;
+PARAMETER highp float gain;
+INLINE void helper(OUT vec2 to) { static float local; CONSTANT float other = 1.0; to.x = local; }
+INLINE vec4 apply(vec4 color) { return color * kFirst; }
+)");
+  EXPECT_THAT(names(scan), ElementsAre("static", "CONSTANT", "FIXED", "INLINE", "PARAMETER", "OUT", "kFirst", "kSecond",
+                                       "kThird", "kFourth", "gain", "helper", "apply"));
+  EXPECT_FALSE(scan.keeps_state);
+  ASSERT_EQ(scan.interface.params.size(), 1u);
+  EXPECT_EQ(scan.interface.params[0].line, 10);
+  EXPECT_EQ(scan.interface.kind, PassKind::pixel);
+  ASSERT_EQ(scan.unset.size(), 2u);
+  EXPECT_EQ(scan.unset[0].name, "to");
+  EXPECT_EQ(scan.unset[1].name, "local");
+}
+
+TEST(Scan, AMacroOfQualifiersWithTwoDefinitionsIsWhatBothHave) {
+  const std::string choice = "#ifdef FAST\n#define FIXED lowp const\n#else\n#define FIXED\n#endif\n";
+  EXPECT_TRUE(scanned(choice + "FIXED float one = 1.0;\n" + kOwnPixel).keeps_state);
+  EXPECT_FALSE(scanned("#define FIXED lowp const\n#undef FIXED\n#define FIXED const\nFIXED float one = 1.0;\n" +
+                       std::string(kOwnPixel))
+                   .keeps_state);
+  EXPECT_THAT(
+      names(scanned("#define REAL\n#undef REAL\n#define REAL float\nREAL one = 1.0;\n" + std::string(kOwnPixel))),
+      ElementsAre("REAL", "one", "apply"));
+}
+
 TEST(Scan, LineContinuationsCountAsLines) {
   const auto scan =
       scanned("#define A(x) \\\n  (x) \\\r\n  + 1.0\nuniform float \\\n t;\nvec4 apply(vec4 c) { return c; }\n");
@@ -180,6 +216,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"layout() const", 1, "layout is only known as"}, Bad{"layout", 1, "layout needs"},
         Bad{"float helper(float x)\n" + kEnd, 1, "'{' or ';' was expected after helper"},
         Bad{"\nDECLARE(foo)\n" + kEnd, 2, "macros that make declarations"},
+        Bad{"#define INPUT \\\n in\n\nINPUT vec2 uv;\n" + kEnd, 4, "'in' is not allowed at file scope"},
+        Bad{"#define INLINE\n\nINLINE int max(int a) { return a; }\n" + kEnd, 3, "'max' is a built-in function"},
         Bad{"int max(int a) { return a; }\n" + kEnd, 1, "'max' is a built-in function"},
         Bad{"vec4 fetch(int a) { return vec4(a); }\n" + kEnd, 1, "'fetch' is a helper that every shader has"},
         Bad{"#define image_size 3\n" + kEnd, 1, "'image_size' is a helper"},
