@@ -112,6 +112,21 @@ class MacroCheck {
     return {};
   }
 
+  /// Is it the name of `defined NAME` or `defined(NAME)` in a condition?
+  static bool is_asked_for(Tokens tokens, std::size_t at) {
+    if (tokens[at]->directive >= 0 && at > 0 && tokens[at - 1]->is("(")) --at;
+    return tokens[at]->directive >= 0 && at > 0 && tokens[at - 1]->is("defined");
+  }
+
+  /// Is it the name of a macro with arguments that the preprocessor leaves alone? Something must stand behind it that
+  /// is no bracket and becomes none: behind the last word of a macro or an argument stands what is not known here.
+  bool is_plain_name(std::size_t file, const std::vector<Macro>& definitions, Tokens tokens, std::size_t at,
+                     std::span<const std::string_view> params) {
+    if (!definitions.front().function || at + 1 >= tokens.size()) return false;
+    const Token& behind = *tokens[at + 1];
+    return !behind.is("(") && std::ranges::find(params, behind.text) == params.end() && !find(file, behind.text);
+  }
+
   /// How `tokens` of `file` grow; `params` are those of the macro whose body they are.
   Result<Form> grow(std::size_t file, Tokens tokens, std::span<const std::string_view> params, int depth) {
     Form total(1 + params.size(), 0.0);
@@ -120,7 +135,7 @@ class MacroCheck {
                   fmt::format("macros use macros more than {} deep", kMaxMacroDepth));
     for (std::size_t i = 0; i < tokens.size(); ++i) {
       const Token& token = *tokens[i];
-      if (!token.is_identifier() || (i > 0 && tokens[i - 1]->is("defined"))) {
+      if (!token.is_identifier() || (depth == 0 && is_asked_for(tokens, i))) {
         total[0] += 1;
         continue;
       }
@@ -130,7 +145,7 @@ class MacroCheck {
       }
       auto* definitions = find(file, token.text);
       total[0] += 1;
-      if (!definitions) continue;
+      if (!definitions || is_plain_name(file, *definitions, tokens, i, params)) continue;
       AFTERGLOW_TRY(const Form form, form_of(*definitions, depth));
       if (form.empty()) continue;
       total[0] += form[0];

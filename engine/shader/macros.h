@@ -22,7 +22,7 @@ struct MacroFile {
 };
 
 /// Errors (script): a statement that grows beyond the limits; macros used in ways that keep their growth from being
-/// known (unbalanced brackets in a macro, the name of a macro with arguments without its arguments).
+/// known (unbalanced brackets in a macro, the name of a macro with arguments where arguments may come behind it).
 Result<void> check_macros(const std::vector<MacroFile>& files);
 
 }  // namespace afterglow

@@ -180,6 +180,34 @@ TEST(Hostile, MacrosWhoseGrowthIsHiddenAreRefused) {
   EXPECT_THAT(source.error().message, HasSubstr("macros expand to more than"));
 }
 
+TEST(Hostile, NamesOfMacrosWithoutArgumentsAreNames) {
+  const std::string square = "#define SQ(x) ((x) * (x))\n";
+  EXPECT_EQ(outcome(square + "#if defined(SQ) && defined ( SQ )\n#define K 0.5\n#endif\n" + in_apply("c *= SQ(K);")),
+            "ok");
+  EXPECT_EQ(outcome(square + "#if !defined SQ || !defined(SQ)\n#error no SQ\n#endif\n" + in_apply("c *= SQ(2.0);")),
+            "ok");
+  EXPECT_EQ(outcome("struct Noise { float fbm, SQ; };\n" + square + "#define fbm(p) SQ(p)\n" +
+                    in_apply("Noise n = Noise(1.0, 2.0); n.fbm += n.SQ; c *= fbm(n.fbm + 1.0) + (n.SQ);")),
+            "ok");
+  EXPECT_EQ(outcome(square + "float f(float SQ) { return SQ; }\n" + in_apply("float SQ = SQ(2.0); c *= f(1.0) + SQ;")),
+            "ok");
+}
+
+TEST(Hostile, NamesOfMacrosThatMayGetArgumentsLaterAreRefused) {
+  const std::string twice = "#define F(x) x + x\n#define NONE\n";
+  const std::string why = "macro 'F' needs its arguments behind it";
+  EXPECT_THAT(outcome(twice + "#define CALL(f) f(1.0)\n" + in_apply("c *= CALL(F);")), HasSubstr(":5: error: " + why));
+  EXPECT_THAT(outcome(twice + "#define CALL(f) f(1.0)\n" + in_apply("c *= CALL(F NONE);")), HasSubstr(why));
+  EXPECT_THAT(outcome(twice + "#define G(x) F x\n" + in_apply("c *= G((1.0));")), HasSubstr(":3: error: " + why));
+  EXPECT_THAT(outcome(twice + "#define G defined F\n" + in_apply("c *= G(1.0);")), HasSubstr(why));
+  std::string function = "#define F0(x) x + x\n";
+  for (int i = 1; i < 40; ++i)
+    function +=
+        "#define F" + std::to_string(i) + "(x) F" + std::to_string(i - 1) + "(x) + F" + std::to_string(i - 1) + "(x)\n";
+  EXPECT_THAT(outcome(function + "float defined(float x) { return x; }\n" + in_apply("c *= defined(F39(1.0));")),
+              HasSubstr("macros expand to more than"));
+}
+
 TEST(Hostile, IncludesAreLimited) {
   ShaderFiles files;
   for (int i = 0; i < 100; ++i)
