@@ -20,6 +20,10 @@ NameMap names_of_prelude() {
   return {{"texture", {"ag_texture"}}, {"textureLod", {"ag_texture"}}, {"textureOffset", {"ag_texture_offset"}}};
 }
 
+NewName new_name(const std::string& prefix, const GlobalName& name) {
+  return {prefix + name.name, name.macro, name.with_arguments, name.field_arguments};
+}
+
 }  // namespace
 
 Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scanned, const std::string& prefix,
@@ -31,7 +35,7 @@ Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scan
     seen.push_back(index);
     see(libraries_[index], names);
   }
-  for (const auto& name : scanned.names) names.insert_or_assign(name.name, NewName{prefix + name.name, name.macro});
+  for (const auto& name : scanned.names) names.insert_or_assign(name.name, new_name(prefix, name));
   add_shared(scanned, prefix);
   stages_text_ += line_of(source.path) +
                   rewrite(source.text, scanned, names, constants, add_unset(scanned, source.path, prefix), readers);
@@ -50,8 +54,7 @@ std::string KernelTexts::zeros_of_shared(std::int64_t invocations) const {
 }
 
 void KernelTexts::see(const Library& library, NameMap& names) {
-  for (const auto& name : library.names)
-    names.insert_or_assign(name.name, NewName{library.prefix + name.name, name.macro});
+  for (const auto& name : library.names) names.insert_or_assign(name.name, new_name(library.prefix, name));
 }
 
 /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before it.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "shader/give_values.h"
+#include "shader/macro_arguments.h"
 
 namespace afterglow {
 namespace {
@@ -56,6 +57,20 @@ StorageReaders::const_iterator reader_of(const std::vector<Token>& tokens, std::
   return readers.find(tokens[i + 2].text);
 }
 
+/// Is tokens[i] given to a macro that makes the name of a field of it?
+bool is_given_as_field(const std::vector<Token>& tokens, std::size_t i, const NameMap& names) {
+  const auto place = argument_beginning_at(tokens, i);
+  const auto macro = place ? names.find(place->name) : names.end();
+  return macro != names.end() && place->number < macro->second.field_arguments.size() &&
+         macro->second.field_arguments[place->number];
+}
+
+/// Does a word stay where a field's name stands? Macros are replaced there, but one that has arguments only with them.
+bool stays_as_field(const NewName& name, const std::vector<Token>& tokens, std::size_t i) {
+  const bool has_arguments = i + 1 < tokens.size() && tokens[i + 1].is("(");
+  return !name.macro || (name.with_arguments && !has_arguments);
+}
+
 /// As many line ends as `text` has.
 std::string only_newlines(std::string_view text) {
   std::string out;
@@ -92,14 +107,19 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
   };
   FieldFinder fields;
   const Token* previous = nullptr;
+  std::vector<std::string_view> parameters;  // of the macro in whose definition the token stands
   for (std::size_t i = 0; i < scanned.tokens.size(); ++i) {
     const Token& token = scanned.tokens[i];
     apply_edits_before(token.offset);
+    if (!previous || previous->directive != token.directive)
+      parameters = macro_parameters(scanned.tokens, i).value_or(std::vector<std::string_view>());
+    const bool macro_name = token.directive >= 0 && i >= 2 && scanned.tokens[i - 1].is("define");
+    const bool parameter = !macro_name && std::ranges::find(parameters, token.text) != parameters.end();
     const bool field = (token.directive < 0 && fields.next(token)) || (previous && previous->is("."));
     const bool directive_word =
         token.directive >= 0 && previous && previous->is("#") && previous->directive == token.directive;
     previous = &token;
-    if (token.offset < copied || !token.is_identifier() || directive_word) continue;
+    if (token.offset < copied || !token.is_identifier() || directive_word || parameter) continue;
     if (const auto reader = reader_of(scanned.tokens, i, readers); reader != readers.end()) {
       // `fetch(depth, p)` → `ag_r2_fetch(p)`: the image and the comma behind it go.
       const Token& bracket = scanned.tokens[i + 1];
@@ -111,7 +131,9 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
       continue;
     }
     const auto name = names.find(token.text);
-    if (name == names.end() || (field && !name->second.macro)) continue;
+    if (name == names.end()) continue;
+    if (stays_as_field(name->second, scanned.tokens, i) && (field || is_given_as_field(scanned.tokens, i, names)))
+      continue;
     out += text.substr(copied, token.offset - copied);
     out += name->second.text;
     copied = token.end();

@@ -14,10 +14,13 @@
 
 namespace afterglow {
 
+/// Macros are replaced wherever the preprocessor would, other names not where fields stand: behind '.', in a struct, or
+/// as an argument that a macro makes a field of.
 struct NewName {
   std::string text;
-  bool macro =
-      false;  ///< macros are replaced wherever the word stands; other names not behind '.' nor as fields of a struct
+  bool macro = false;
+  bool with_arguments = false;             ///< as of GlobalName
+  std::vector<bool> field_arguments = {};  ///< as of GlobalName
 };
 
 /// What a word of the file becomes.

@@ -16,6 +16,7 @@
 #include "shader/directives.h"
 #include "shader/entry_point.h"
 #include "shader/foreign_words.h"
+#include "shader/macro_arguments.h"
 #include "shader/qualifiers.h"
 #include "shader/workgroup.h"
 
@@ -58,6 +59,12 @@ class ShaderScanner {
     for (const auto& token : code_tokens_) code_.push_back(&token);
     AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));
     for (const auto& macro : directives.macros) AFTERGLOW_CHECK(add_name(macro, true));
+    for (auto& [name, fields] : field_arguments(out_.tokens)) {
+      const auto macro = std::ranges::find(out_.names, name, &GlobalName::name);
+      if (macro == out_.names.end()) continue;
+      macro->with_arguments = true;
+      macro->field_arguments = fields;
+    }
     out_.includes = std::move(directives.includes);
     out_.edits = std::move(directives.edits);
     while (at_ < code_.size()) AFTERGLOW_CHECK(declaration());

@@ -19,6 +19,8 @@ struct GlobalName {
   std::string name;
   bool macro = false;
   int line = 0;
+  bool with_arguments = false;             ///< a macro that has them
+  std::vector<bool> field_arguments = {};  ///< of such a macro: which of them are names of fields
 };
 
 /// A variable that the invocations of a workgroup share.

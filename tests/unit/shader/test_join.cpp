@@ -170,6 +170,42 @@ vec4 apply(vec4 color) {
   EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
 }
 
+TEST_F(Join, FieldsThatMacrosAreGivenKeepTheirNames) {
+  files_.write("lib/get.glsl", "#define OF(v, f) v.f\n");
+  const std::string text = R"(#include "lib/get.glsl"
+uniform float x, rg;
+uniform vec4 v;
+struct Pair { vec4 rg; };
+#define GET(f) color.f
+#define AGAIN(w, f) (w * GET(f))
+#define TWICE(x, rg) (x + x) * rg
+#define SWIZZLE(x) v.x
+vec4 apply(vec4 color) {
+  Pair pair = Pair(color);
+  return vec4(GET(x), AGAIN(x, x) * TWICE(x, rg), OF(v, rg) * SWIZZLE(y)) + GET(rg.x) + OF(pair, rg.x) + OF(v, x);
+}
+)";
+  EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
+  const auto glsl = assembled(join({files_.stage("a", text)}));
+  EXPECT_THAT(glsl, HasSubstr("ag_s0_AGAIN(ag_s0_x, x) * ag_s0_TWICE(ag_s0_x, ag_s0_rg), ag_l0_OF(ag_s0_v, rg)"));
+  EXPECT_THAT(glsl, HasSubstr("#define ag_s0_SWIZZLE(x) ag_s0_v.x\n"));
+  EXPECT_THAT(glsl, HasSubstr("#define ag_s0_TWICE(x, rg) (x + x) * rg\n"));
+}
+
+TEST_F(Join, AnArgumentThatIsMoreThanAFieldIsAName) {
+  const std::string text =
+      "uniform float gain;\n#ifdef WIDE\n#define GET(f) color.f\n#else\n#define GET(f) (f)\n#endif\n"
+      "#define BOTH(f) (f + f)\nvec4 apply(vec4 color) { return color * GET(gain) * BOTH(gain); }\n";
+  EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
+}
+
+TEST_F(Join, FieldsNamedLikeMacrosWithArgumentsKeepTheirNames) {
+  const std::string text =
+      "#define r(a) mat2(cos(a), sin(a), -sin(a), cos(a))\n#define fbm(p) fract(p)\nstruct Noise { float fbm; };\n"
+      "vec4 apply(vec4 c) { Noise n = Noise(fbm(c.r * 2.0)); c.rg *= r(n.fbm + c.r * 2.0); return c; }\n";
+  EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
+}
+
 TEST_F(Join, UnderscoresAreNoTrouble) {
   const std::string text =
       "#define _K 2.0\n#define __K 3.0\nuniform float _t;\nfloat __f(float _x) { return _x * _K * __K; }\n"
