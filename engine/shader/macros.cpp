@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <span>
 
 namespace afterglow {
@@ -21,8 +22,9 @@ struct Macro {
   bool function = false;
   std::vector<std::string_view> params;
   std::vector<const Token*> body;
-  bool active = false;  ///< being expanded: a macro is not expanded within itself
-  Form form;            ///< empty: not known yet
+  bool active = false;                   ///< being expanded: a macro is not expanded within itself
+  Form form;                             ///< empty: not known yet
+  std::optional<bool> keeps_apart = {};  ///< its arguments: see keeps_arguments_apart; none: not known yet
 };
 
 class MacroCheck {
@@ -121,14 +123,39 @@ class MacroCheck {
   /// Is it the name of a macro with arguments that the preprocessor leaves alone? Something must stand behind it that
   /// is no bracket and becomes none: behind the last word of a macro or an argument stands what is not known here.
   bool is_plain_name(std::size_t file, const std::vector<Macro>& definitions, Tokens tokens, std::size_t at,
-                     std::span<const std::string_view> params) {
-    if (!definitions.front().function || at + 1 >= tokens.size()) return false;
+                     std::span<const std::string_view> params, bool stays_apart) {
+    if (!definitions.front().function) return false;
+    if (at + 1 >= tokens.size()) return stays_apart;
     const Token& behind = *tokens[at + 1];
     return !behind.is("(") && std::ranges::find(params, behind.text) == params.end() && !find(file, behind.text);
   }
 
-  /// How `tokens` of `file` grow; `params` are those of the macro whose body they are.
-  Result<Form> grow(std::size_t file, Tokens tokens, std::span<const std::string_view> params, int depth) {
+  /// Does something that is no bracket stand behind each argument of a macro wherever it puts them? Not where other
+  /// macros with arguments get them.
+  bool keeps_arguments_apart(const Macro& macro) {
+    const auto is_param = [&](std::string_view word) {
+      return std::ranges::find(macro.params, word) != macro.params.end();
+    };
+    for (std::size_t i = 0; i < macro.body.size(); ++i) {
+      if (!is_param(macro.body[i]->text)) {
+        if (find(macro.file, macro.body[i]->text)) return false;
+        continue;
+      }
+      if (i + 1 >= macro.body.size() || macro.body[i + 1]->is("(") || is_param(macro.body[i + 1]->text)) return false;
+    }
+    return true;
+  }
+  bool keep_arguments_apart(std::vector<Macro>& definitions) {
+    return std::ranges::all_of(definitions, [&](Macro& macro) {
+      if (!macro.keeps_apart) macro.keeps_apart = keeps_arguments_apart(macro);
+      return *macro.keeps_apart;
+    });
+  }
+
+  /// How `tokens` of `file` grow; `params` are those of the macro whose body they are. `stays_apart`: what stands
+  /// behind them is known to be no bracket.
+  Result<Form> grow(std::size_t file, Tokens tokens, std::span<const std::string_view> params, int depth,
+                    bool stays_apart = false) {
     Form total(1 + params.size(), 0.0);
     if (depth > kMaxMacroDepth)
       return fail(file, tokens.empty() ? 0 : tokens[0]->line,
@@ -145,7 +172,7 @@ class MacroCheck {
       }
       auto* definitions = find(file, token.text);
       total[0] += 1;
-      if (!definitions || is_plain_name(file, *definitions, tokens, i, params)) continue;
+      if (!definitions || is_plain_name(file, *definitions, tokens, i, params, stays_apart)) continue;
       AFTERGLOW_TRY(const Form form, form_of(*definitions, depth));
       if (form.empty()) continue;
       total[0] += form[0];
@@ -162,6 +189,7 @@ class MacroCheck {
     const Token& token = *tokens[name];
     if (name + 1 >= tokens.size() || !tokens[name + 1]->is("("))
       return fail(file, token.line, fmt::format("macro '{}' needs its arguments behind it", token.text));
+    const bool apart = keep_arguments_apart(*find(file, token.text));
     std::size_t begin = name + 2, argument = 1;
     int brackets = 1;
     for (std::size_t i = begin; i < tokens.size(); ++i) {
@@ -169,7 +197,7 @@ class MacroCheck {
       if (t.is("(") || t.is("[") || t.is("{")) ++brackets;
       if (t.is(")") || t.is("]") || t.is("}")) --brackets;
       if (brackets > 1 || (brackets == 1 && !t.is(","))) continue;
-      AFTERGLOW_TRY(const Form grown, grow(file, tokens.subspan(begin, i - begin), params, depth + 1));
+      AFTERGLOW_TRY(const Form grown, grow(file, tokens.subspan(begin, i - begin), params, depth + 1, apart));
       const double times = argument < form.size() ? std::max(form[argument], 1.0) : 1.0;
       for (std::size_t k = 0; k < total.size(); ++k) total[k] += times * grown[k];
       if (brackets == 0) return i;

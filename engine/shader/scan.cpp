@@ -59,11 +59,12 @@ class ShaderScanner {
     for (const auto& token : code_tokens_) code_.push_back(&token);
     AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));
     for (const auto& macro : directives.macros) AFTERGLOW_CHECK(add_name(macro, true));
-    for (auto& [name, fields] : field_arguments(out_.tokens)) {
-      const auto macro = std::ranges::find(out_.names, name, &GlobalName::name);
-      if (macro == out_.names.end()) continue;
-      macro->with_arguments = true;
-      macro->field_arguments = fields;
+    const FieldArguments fields = field_arguments(out_.tokens);
+    for (auto& name : out_.names) {
+      const auto macro = fields.find(name.name);
+      if (macro == fields.end()) continue;
+      name.with_arguments = true;
+      name.field_arguments = macro->second;
     }
     out_.includes = std::move(directives.includes);
     out_.edits = std::move(directives.edits);

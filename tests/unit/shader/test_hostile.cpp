@@ -189,6 +189,9 @@ TEST(Hostile, NamesOfMacrosWithoutArgumentsAreNames) {
   EXPECT_EQ(outcome("struct Noise { float fbm, SQ; };\n" + square + "#define fbm(p) SQ(p)\n" +
                     in_apply("Noise n = Noise(1.0, 2.0); n.fbm += n.SQ; c *= fbm(n.fbm + 1.0) + (n.SQ);")),
             "ok");
+  EXPECT_EQ(outcome(square + "#define fbm(p) fract(p)\nstruct Noise { float fbm; };\n" +
+                    in_apply("Noise n = Noise(1.0); c *= SQ(n.fbm) + fbm(c.r + n.fbm);")),
+            "ok");
   EXPECT_EQ(outcome(square + "float f(float SQ) { return SQ; }\n" + in_apply("float SQ = SQ(2.0); c *= f(1.0) + SQ;")),
             "ok");
 }
@@ -198,6 +201,10 @@ TEST(Hostile, NamesOfMacrosThatMayGetArgumentsLaterAreRefused) {
   const std::string why = "macro 'F' needs its arguments behind it";
   EXPECT_THAT(outcome(twice + "#define CALL(f) f(1.0)\n" + in_apply("c *= CALL(F);")), HasSubstr(":5: error: " + why));
   EXPECT_THAT(outcome(twice + "#define CALL(f) f(1.0)\n" + in_apply("c *= CALL(F NONE);")), HasSubstr(why));
+  EXPECT_THAT(outcome(twice + "#define CALL(f) (f NONE (1.0))\n" + in_apply("c *= CALL(F);")), HasSubstr(why));
+  EXPECT_THAT(outcome(twice + "#define SAME(f, g) (f g)\n" + in_apply("c *= SAME(F, (1.0));")), HasSubstr(why));
+  EXPECT_THAT(outcome(twice + "#define CALL(f) f(1.0)\n#define PASS(f) (CALL(f))\n" + in_apply("c *= PASS(F);")),
+              HasSubstr(why));
   EXPECT_THAT(outcome(twice + "#define G(x) F x\n" + in_apply("c *= G((1.0));")), HasSubstr(":3: error: " + why));
   EXPECT_THAT(outcome(twice + "#define G defined F\n" + in_apply("c *= G(1.0);")), HasSubstr(why));
   std::string function = "#define F0(x) x + x\n";
