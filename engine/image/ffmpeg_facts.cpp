@@ -80,10 +80,10 @@ bool is_interlaced(const AVFrame& frame) {
 /// What a file says of its colours, as the number that stands there: FFmpeg's readers (Matroska's) put numbers into
 /// enumerations that have no such name, and C++ may not read those as what they claim to be.
 template <class Enumeration>
-int number_of(const Enumeration& said) {
-  static_assert(sizeof said == sizeof(int));
+int number_of(const Enumeration& stands) {
+  static_assert(sizeof stands == sizeof(int));
   int number = 0;
-  std::memcpy(&number, &said, sizeof number);
+  std::memcpy(&number, &stands, sizeof number);
   return number;
 }
 

@@ -25,6 +25,7 @@
 #include "shader/source_hash.h"
 #include "shader/spirv_module.h"
 #include "shader/spirv_passes.h"
+#include "shader/unroll_arrays.h"
 #include "shader/usable.h"
 #include "shader/weight.h"
 
@@ -109,11 +110,13 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names, stage));
   AFTERGLOW_CHECK(check_weight(kernel.spirv, desc));
   AFTERGLOW_CHECK(check_usable(kernel.spirv, assembled, stage));
+  ArraysUnrolled unrolled = unroll_over_arrays(std::move(kernel.spirv), desc.config.rows);
+  kernel.spirv = std::move(unrolled.spirv);
   if (desc.config.guard_loops) {
     LoopsGuarded guarded = guard_loops(kernel.spirv, static_cast<std::uint32_t>(bound) + 1);
     kernel.spirv = std::move(guarded.spirv);
     if (guarded.guarded) {
-      AFTERGLOW_TRY(kernel.loops, loop_places(assembled.glsl, stage));
+      AFTERGLOW_TRY(kernel.loops, loop_places(assembled.glsl, stage, unrolled.loops));
     }
   }
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);

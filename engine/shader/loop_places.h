@@ -11,8 +11,9 @@
 
 namespace afterglow {
 
-/// Of assembled GLSL: the number of the file and the line of each loop, one behind the other, in the order of the
-/// OpLoopMerge in what compile_glsl makes of it.
-Result<std::vector<std::uint32_t>> loop_places(const std::string& glsl, GlslStage stage);
+/// Of assembled GLSL: the number of the file and the line of each of `loops`, one behind the other. Those are counted
+/// by the OpLoopMerge in what compile_glsl makes of it.
+Result<std::vector<std::uint32_t>> loop_places(const std::string& glsl, GlslStage stage,
+                                               const std::vector<std::uint32_t>& loops);
 
 }  // namespace afterglow

@@ -66,9 +66,12 @@ Instruction Instruction::of_ids(spv::Op op, std::uint32_t type, std::uint32_t re
 }
 
 Instruction renamed(Instruction instruction, const Renaming& names) {
-  for (const auto word : instruction.ids)
-    if (const auto name = names.find(instruction.words[word]); name != names.end())
-      instruction.words[word] = name->second;
+  const auto rename = [&](std::uint32_t& id) {
+    if (const auto name = names.find(id); name != names.end()) id = name->second;
+  };
+  for (const auto word : instruction.ids) rename(instruction.words[word]);
+  rename(instruction.type);
+  rename(instruction.result);
   return instruction;
 }
 

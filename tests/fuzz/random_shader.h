@@ -105,7 +105,7 @@ class RandomShader {
   std::string statement(int depth, bool in_loop) {
     if (++statements_ > kMostStatements) return "c += 1.0;\n";
     const std::string i = "i" + std::to_string(++names_);
-    switch (depth > 0 ? take(14) : take(3)) {
+    switch (depth > 0 ? take(15) : take(3)) {
       case 0:
         return "c = " + vector(2) + ";\n";
       case 1:
@@ -141,10 +141,22 @@ class RandomShader {
       case 12:
         return "for (int " + i + " = 0; " + i + " < 4; ++" + i + ") {\n  c[" + i + "] = " + number(1) + ";\n" +
                block(depth - 1, true) + "}\n";
+      case 13:  // an array is filled, and stepped through by loops of which one begins at the other's number
+        return "vec2 " + i + "[5];\nint n" + i + " = 0;\nfor (int a = 0; a < 5; ++a) " + skip("a") + i + "[n" + i +
+               "++] = vec2(" + number(1) + ", " + number(0) +
+               ");\nfor (int a = 0; a < 4; ++a)\nfor (int b = a + 1; b < 5; ++b) {\n" + skip("b") + i + "[b] = 0.5 * " +
+               i + "[b] - " + i + "[a];\n" + block(depth - 1, true) + "}\nc.xy += " + i + "[" +
+               (take(2) == 0 ? digit() + " % 5" : "k % 5") + "];\n";
       default:
         return "for (int " + i + " = 0;; ++" + i + ") {\n  if (" + i + " >= " + bound() + ") break;\n" +
                block(depth - 1, true) + "}\n";
     }
+  }
+  /// Some turns of a loop end early.
+  std::string skip(const std::string& counter) {
+    const std::string when[] = {"", "if (" + counter + " == " + digit() + ") continue; else ",
+                                "if (" + condition(0) + ") continue; else "};
+    return when[take(3)];
   }
   std::string bound() {
     switch (take(4)) {

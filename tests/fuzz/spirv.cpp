@@ -2,6 +2,7 @@
 // What is done to SPIR-V: of any valid module, each step makes a valid one. The module is what the compiler makes of a
 // random shader, made other by passes of SPIRV-Tools (so that it is not as our compiler writes it), or the input
 // itself. That the pixels stay: SpirvSteps in tests/unit/shader.
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <spirv-tools/libspirv.hpp>
@@ -10,13 +11,14 @@
 #include "fuzz.h"
 #include "random_shader.h"
 #include "shader/cpu/defeat_uniform_inlining.h"
-#include "shader/guard_loops.h"
 #include "shader/cpu/interleave.h"
 #include "shader/cpu/merge_equal.h"
 #include "shader/give_values.h"
 #include "shader/glsl.h"
+#include "shader/guard_loops.h"
 #include "shader/kernel.h"
 #include "shader/spirv_module.h"
+#include "shader/unroll_arrays.h"
 
 using namespace afterglow;
 
@@ -30,8 +32,19 @@ std::string text_of(const Words& spirv) {
   return out;
 }
 
+std::size_t loops_in(const Words& spirv) {
+  const auto module = parse(spirv);
+  return module ? static_cast<std::size_t>(std::ranges::count(module->code, spv::OpLoopMerge, &Instruction::op)) : 0;
+}
+
 void steps(const Words& spirv, const std::vector<AssembledKernel::UnsetVariable>& unset) {
   const std::vector<std::function<Words(const Words&)>> all{
+      [](const Words& in) {
+        const ArraysUnrolled out = unroll_over_arrays(in, 1);
+        FUZZ_CLAIM(std::ranges::all_of(out.loops, [n = loops_in(in)](auto loop) { return loop < n; }), text_of(in));
+        FUZZ_CLAIM(out.loops.size() == loops_in(out.spirv), text_of(in));
+        return out.spirv;
+      },
       [](const Words& in) { return guard_loops(in, 17).spirv; },
       [&unset](const Words& in) { return give_values(in, unset).spirv; },
       [](const Words& in) { return interleave_rows(in, 4).value_or(in); },

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <spirv-tools/libspirv.hpp>
@@ -11,6 +12,7 @@
 #include "../../fuzz/random_shader.h"
 #include "kernel_runner.h"
 #include "shader_files.h"
+#include "untouched.h"
 
 namespace afterglow {
 namespace {
@@ -45,28 +47,42 @@ bool same(const TestImage& a, const TestImage& b) {
   return true;
 }
 
+/// Straight code gives drivers more to reorder than loops do: a + b + b.
+bool near(const TestImage& a, const TestImage& b) {
+  const auto known = [](float v) { return v == v && std::abs(v) < 1e30f; };
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+    const float x = a.rgba[i], y = b.rgba[i];
+    if (known(x) != known(y) || (known(x) && std::abs(x - y) > 1e-4f * (1.f + std::abs(x)))) return false;
+  }
+  return true;
+}
+
 TEST(SpirvSteps, PixelsOfRandomShadersStay) {
   const TestImage image = waves({9, 8});
   std::mt19937 random(11);
   KernelCompiler compiler({});
   int guarded = 0;
-  for (int round = 0; round < 32; ++round) {
+  for (int round = 0; round < 40; ++round) {
     std::vector<std::uint8_t> bytes(36);
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const std::string text = fuzz::RandomShader(bytes.data(), bytes.size()).text();
     const ShaderFiles files;
     KernelDesc desc;
     desc.sample = files.stage("test/random", text);
-    const auto plain = compiler.compile(desc);
-    ASSERT_TRUE(plain) << plain.error().text() << "\n" << text;
-    desc.config.defeat_uniform_inlining = desc.config.guard_loops = desc.config.flat_parameters = true;
+    desc.config.defeat_uniform_inlining = true;  // Mesa divides by zeros that it knows in its own way
+    const auto as_it_is = compiler.compile(desc);
+    ASSERT_TRUE(as_it_is) << as_it_is.error().text() << "\n" << text;
+    const CompiledKernel plain = untouched(desc, *as_it_is);
+    EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(as_it_is->spirv)) << text;
+    desc.config.guard_loops = desc.config.flat_parameters = true;
     desc.config.rows = round % 4 == 3 ? 4 : 1;
     const auto changed = compiler.compile(desc);
     ASSERT_TRUE(changed) << changed.error().text() << "\n" << text;
     EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(changed->spirv)) << text;
     guarded += !changed->loops.empty();
     for (const int n : {0, 5}) {
-      const TestImage want = runner().run(*plain, {image}, image.size, values(*plain, n, 0.75f));
+      const TestImage want = runner().run(*as_it_is, {image}, image.size, values(*as_it_is, n, 0.75f));
+      EXPECT_TRUE(near(runner().run(plain, {image}, image.size, values(plain, n, 0.75f)), want)) << text;
       const TestImage made = runner().run(*changed, {image}, image.size, values(*changed, n, 0.75f));
       EXPECT_TRUE(same(want, made)) << "n = " << n << ", rows " << desc.config.rows << "\n" << text;
     }

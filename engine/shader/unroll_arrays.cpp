@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: MIT
+#include "shader/unroll_arrays.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/saturated.h"
+#include "shader/spirv_loops.h"
+#include "shader/spirv_module.h"
+#include "shader/spirv_passes.h"
+#include "shader/whole_numbers.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::uint64_t kMostTurns = 64;
+constexpr std::uint64_t kMostMore = 8192;      ///< operations that a kernel has more than before, for each row
+constexpr std::uint64_t kMostTried = 32768;    ///< of a loop, before anything is known of its turns
+constexpr std::uint64_t kWorthOfAccess = 256;  ///< operations beside which memory does not count
+
+/// Functions of GLSL.std.450 that are an instruction or two: rounding, abs, sign; min, max, clamp, mix; step; fma; min
+/// and max beside NaN.
+bool is_cheap(std::uint32_t function) {
+  const auto within = [&](std::uint32_t first, std::uint32_t last) { return function >= first && function <= last; };
+  return within(1, 10) || within(37, 46) || function == 48 || function == 50 || within(79, 81);
+}
+
+/// What an instruction comes to in registers: memory is none of it, since arrays are to become values.
+std::uint64_t weight_of(const Instruction& i) {
+  constexpr std::uint64_t kOfFunction = 32, kOfImage = 16, kOfBranch = 16;
+  switch (i.op) {
+    case spv::OpLoad:
+    case spv::OpStore:
+    case spv::OpAccessChain:
+    case spv::OpLabel:
+    case spv::OpBranch:
+    case spv::OpLoopMerge:
+    case spv::OpVariable:
+    case spv::OpLine:
+    case spv::OpNoLine:
+      return 0;
+    case spv::OpSelectionMerge:
+      return kOfBranch;
+    case spv::OpExtInst:
+      return is_cheap(i.words[4]) ? 1 : kOfFunction;
+    default:
+      return i.op >= spv::OpSampledImage && i.op <= spv::OpImageQuerySamples ? kOfImage : 1;
+  }
+}
+
+/// The functions of a module: what each comes to with all that it calls, and how often it is called.
+class FunctionWeights {
+ public:
+  explicit FunctionWeights(const Module& module) {
+    Function* function = nullptr;
+    for (const auto& i : module.code) {
+      if (i.op == spv::OpFunction) {
+        order_.push_back(i.result);
+        function = &functions_[i.result];
+      }
+      if (i.op == spv::OpEntryPoint) functions_[i.words[2]].times = 1;
+      if (!function) continue;
+      function->own += weight_of(i);
+      function->loops |= i.op == spv::OpLoopMerge;
+      if (i.op == spv::OpFunctionCall) function->calls.push_back(i.words[3]);
+    }
+    for (const auto id : order_) weight(id);
+    count_calls();
+  }
+
+  std::uint64_t weight(const Instruction& i) {
+    return i.op == spv::OpFunctionCall ? saturated_sum({1, weight(i.words[3])}) : weight_of(i);
+  }
+  /// A call of what turns loops.
+  bool turns(const Instruction& i) { return i.op == spv::OpFunctionCall && functions_[i.words[3]].loops; }
+  std::uint64_t times(std::uint32_t function) { return functions_[function].times; }
+
+ private:
+  struct Function {
+    std::uint64_t own = 0, whole = 0, times = 0;
+    std::vector<std::uint32_t> calls;
+    bool loops = false;  ///< its own, or those of what it calls
+    bool weighed = false, counted = false;
+  };
+
+  /// GLSL has no recursion.
+  std::uint64_t weight(std::uint32_t id) {
+    Function& function = functions_[id];
+    if (std::exchange(function.weighed, true)) return function.whole;
+    std::uint64_t whole = function.own;
+    for (const auto called : function.calls) {
+      whole = saturated_sum({whole, weight(called)});
+      function.loops |= functions_[called].loops;
+    }
+    return function.whole = whole;
+  }
+  /// Callers first.
+  void count_calls() {
+    std::vector<std::uint32_t> callees_first;
+    for (const auto id : order_) visit(id, callees_first);
+    for (auto id = callees_first.rbegin(); id != callees_first.rend(); ++id)
+      for (const auto called : functions_[*id].calls)
+        functions_[called].times = saturated_sum({functions_[called].times, functions_[*id].times});
+  }
+  void visit(std::uint32_t id, std::vector<std::uint32_t>& callees_first) {
+    if (std::exchange(functions_[id].counted, true)) return;
+    for (const auto called : functions_[id].calls) visit(called, callees_first);
+    callees_first.push_back(id);
+  }
+
+  std::map<std::uint32_t, Function> functions_;
+  std::vector<std::uint32_t> order_;
+};
+
+using Labels = std::set<std::uint32_t>;
+
+/// Arrays, vectors and matrices of a shader's own that blocks step through, by an index that is no constant, and at how
+/// many places.
+std::map<std::uint32_t, std::uint64_t> stepped_through(const Module& module, const Labels& blocks) {
+  std::set<std::uint32_t> own, constants;
+  std::map<std::uint32_t, std::uint64_t> out;
+  std::uint32_t label = 0;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpConstant) constants.insert(i.result);
+    const bool variable =
+        i.op == spv::OpVariable && (i.words[3] == spv::StorageClassFunction || i.words[3] == spv::StorageClassPrivate);
+    if (variable || i.op == spv::OpFunctionParameter) own.insert(i.result);
+    if (i.op == spv::OpFunctionEnd) label = 0;
+    if (i.op == spv::OpLabel) label = i.result;
+    if (i.op != spv::OpAccessChain || !own.contains(i.words[3]) || !blocks.contains(label)) continue;
+    if (std::any_of(i.words.begin() + 4, i.words.end(), [&](auto index) { return !constants.contains(index); }))
+      ++out[i.words[3]];
+  }
+  return out;
+}
+
+/// Where the blocks of a loop stand, one behind the other.
+struct Range {
+  std::size_t begin = 0, end = 0;  ///< of the header's OpLabel; behind the last branch
+  bool continues = false;          ///< turns may end by `continue`
+};
+
+/// Nothing when its turns cannot simply stand one behind the other.
+std::optional<Range> range_of(const Module& module, const Loop& loop) {
+  const auto& code = module.code;
+  Range out{loop.head - 1, loop.head, false};
+  if (code[out.begin].op != spv::OpLabel || code[loop.head + 1].op != spv::OpBranch) return std::nullopt;
+  std::size_t blocks = 0;
+  std::set<std::uint32_t> made;
+  for (out.end = out.begin; code[out.end].op != spv::OpFunctionEnd; ++out.end) {
+    const Instruction& i = code[out.end];
+    if (i.op == spv::OpLabel && !loop.blocks.contains(i.result)) break;
+    blocks += i.op == spv::OpLabel ? 1 : 0;
+    if (i.result != 0) made.insert(i.result);
+  }
+  if (blocks != loop.blocks.size()) return std::nullopt;
+  const std::uint32_t next = code[loop.head].words[2];
+  int ways_to_next = 0;
+  bool chooses = false;
+  for (std::size_t at = loop.function; code[at].op != spv::OpFunctionEnd; ++at) {
+    const bool inside = at >= out.begin && at < out.end;
+    const Instruction& i = code[at];
+    chooses |= inside && i.op == spv::OpSwitch;
+    if (inside) ways_to_next += static_cast<int>(std::ranges::count(targets_of(i), next));
+    if (at == loop.head || inside || i.op == spv::OpLabel) continue;
+    // The way into the loop is the one thing outside that may name something of it.
+    if (at != loop.counting->entry &&
+        std::ranges::any_of(i.ids, [&](auto word) { return made.contains(i.words[word]); }))
+      return std::nullopt;
+  }
+  out.continues = ways_to_next > 1;
+  return out.continues && chooses ? std::nullopt : std::optional(out);
+}
+
+class Unroller {
+ public:
+  Unroller(Module module, int rows)
+      : module_(std::move(module)), functions_(module_), most_(saturated_product({kMostMore, bits(rows)})) {
+    for (const auto& loop : find_loops(module_)) origins_[loop.header] = loop.ordinal;
+  }
+
+  ArraysUnrolled run() {
+    while (try_one()) functions_ = FunctionWeights(module_);
+    ArraysUnrolled out{module_.join(), {}};
+    for_each_loop(module_, [&](std::uint32_t header) { out.loops.push_back(origins_.at(header)); });
+    return out;
+  }
+
+ private:
+  static std::uint64_t bits(int rows) { return static_cast<std::uint64_t>(std::max(rows, 1)); }
+  static bool is_short(const Loop& loop) {
+    return loop.counting && loop.counting->turns && *loop.counting->turns > 0 && *loop.counting->turns <= kMostTurns;
+  }
+
+  template <class Do>
+  static void for_each_loop(const Module& module, const Do& what) {
+    std::uint32_t label = 0;
+    for (const auto& i : module.code) {
+      if (i.op == spv::OpLabel) label = i.result;
+      if (i.op == spv::OpLoopMerge) what(label);
+    }
+  }
+
+  /// Those that a turn was left by, and others that its number decides.
+  void drop_dead_branches() {
+    spvtools::Optimizer optimizer(kSpirvEnvironment);
+    optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+    // Twice: what could be left from within goes once what is within it has gone.
+    optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass()).RegisterPass(spvtools::CreateDeadBranchElimPass());
+    auto left = run_passes(optimizer, module_);
+    if (!left) return;
+    bool known = true;
+    for_each_loop(*left, [&](std::uint32_t header) { known &= origins_.contains(header); });
+    if (known) module_ = std::move(*left);
+  }
+
+  /// Unrolls one of the loops, with all that is within it. False: there is none left to be tried.
+  bool try_one() {
+    for (const auto& loop : find_loops(module_)) {
+      if (!is_short(loop) || !tried_.insert(loop.header).second) continue;
+      const auto arrays = stepped_through(module_, loop.blocks);
+      if (arrays.empty()) continue;
+      Unroller trial = *this;
+      const std::uint32_t function = module_.code[loop.function].result;
+      if (!trial.unroll_all_within(loop, function)) continue;
+      trial.decorate_copies();
+      trial.drop_dead_branches();
+      // Copies of loops are more for a driver than an array in memory.
+      if (std::ranges::any_of(find_loops(trial.module_), [&](const Loop& l) { return trial.made_.contains(l.header); }))
+        continue;
+      const auto left = stepped_through(trial.module_, trial.made_);
+      const auto is_left = [&](const auto& array) { return left.contains(array.first); };
+      if (std::ranges::all_of(arrays, is_left) || !trial.pay(function)) continue;
+      trial.made_.clear();
+      *this = std::move(trial);
+      return true;
+    }
+    return false;
+  }
+
+  bool unroll_all_within(const Loop& outermost, std::uint32_t function) {
+    made_ = {outermost.header};
+    for (bool any = true; any;) {
+      any = false;
+      std::vector<Loop> now;  // none within another
+      for (auto& loop : find_loops(module_)) {
+        const bool within = std::ranges::any_of(now, [&](const Loop& o) { return o.blocks.contains(loop.header); });
+        if (!within && made_.contains(loop.header) && is_short(loop) && !stepped_through(module_, loop.blocks).empty())
+          now.push_back(std::move(loop));
+      }
+      for (auto loop = now.rbegin(); loop != now.rend(); ++loop) {  // what stands before keeps its place
+        const auto range = range_of(module_, *loop);
+        if (!range || !is_light(*loop, *range)) return false;
+        unroll(*loop, *range);
+        any = true;
+      }
+      if (any) know_whole_numbers(module_, place_of(function));
+    }
+    return true;
+  }
+
+  std::size_t place_of(std::uint32_t function) const {
+    const auto is_it = [&](const Instruction& i) { return i.op == spv::OpFunction && i.result == function; };
+    return static_cast<std::size_t>(std::ranges::find_if(module_.code, is_it) - module_.code.begin());
+  }
+
+  /// Before it is tried: a body that is not much beside the memory that goes, not too often.
+  bool is_light(const Loop& loop, const Range& range) {
+    std::uint64_t weight = 0, accesses = 0;
+    for (std::size_t at = range.begin; at < range.end; ++at) {
+      if (functions_.turns(module_.code[at])) return false;
+      weight = saturated_sum({weight, functions_.weight(module_.code[at])});
+    }
+    for (const auto& [array, count] : stepped_through(module_, loop.blocks)) accesses += count;
+    return weight / kWorthOfAccess < accesses && saturated_product({weight, *loop.counting->turns}) <= kMostTried;
+  }
+
+  /// Behind it: what is left once the numbers of turns are known.
+  bool pay(std::uint32_t function) {
+    std::uint64_t weight = 0;
+    std::uint32_t label = 0;
+    for (const auto& i : module_.code) {
+      if (i.op == spv::OpLabel) label = i.result;
+      if (i.op == spv::OpFunctionEnd) label = 0;
+      if (made_.contains(label)) weight = saturated_sum({weight, functions_.weight(i)});
+    }
+    weight = saturated_product({weight, functions_.times(function)});
+    if (weight > most_ - more_) return false;
+    more_ += weight;
+    return true;
+  }
+
+  /// The header goes, the test stands before each turn and behind the last one.
+  void unroll(const Loop& loop, const Range& range) {
+    const Counting& counting = *loop.counting;
+    const std::uint32_t test = module_.code[loop.head + 1].words[1], next = module_.code[loop.head].words[2];
+    const std::uint32_t body = module_.code[counting.test].words[2];
+    std::vector<Instruction> straight;
+    std::vector<Renaming> turns;
+    for (std::uint64_t turn = 0; turn < *counting.turns; ++turn) turns.push_back(copies(range, loop.blocks));
+    turns.push_back(copies(range, {test}));
+    for (std::uint64_t turn = 0; turn <= *counting.turns; ++turn) {
+      Renaming& names = turns[turn];
+      const bool last = turn == *counting.turns;
+      if (!last) names[loop.header] = turns[turn + 1].at(test);
+      std::uint32_t label = 0;
+      for (std::size_t at = loop.head + 2; at < range.end; ++at) {
+        const Instruction& i = module_.code[at];
+        if (i.op == spv::OpLabel) label = i.result;
+        if (last && label != test) continue;
+        if (at == counting.test && !last && range.continues) {
+          leave_by_continue(names.at(next), counting.bound, names.at(body), straight);
+        } else if (at == counting.test) {
+          straight.push_back(branch(last ? loop.merge : names.at(body)));
+        } else {
+          straight.push_back(renamed(i, names));
+        }
+        if (i.op != spv::OpLabel) continue;
+        made_.insert(names.at(i.result));
+        if (const auto origin = origins_.find(i.result); origin != origins_.end())
+          origins_[names.at(i.result)] = origin->second;
+      }
+    }
+    module_.code[counting.entry] = branch(turns.front().at(test));
+    const auto at = [&](std::size_t place) { return module_.code.begin() + static_cast<std::ptrdiff_t>(place); };
+    module_.code.erase(at(range.begin), at(range.end));
+    module_.code.insert(at(range.begin), straight.begin(), straight.end());
+  }
+
+  /// What may be left from anywhere within it, and is not a loop, is a switch: here one with a single way.
+  static void leave_by_continue(std::uint32_t next, std::uint32_t number, std::uint32_t body,
+                                std::vector<Instruction>& code) {
+    Instruction merge = Instruction::of_words(spv::OpSelectionMerge, {next, spv::SelectionControlMaskNone});
+    merge.ids = {1};
+    Instruction way = Instruction::of_words(spv::OpSwitch, {number, body});
+    way.ids = {1, 2};
+    code.push_back(std::move(merge));
+    code.push_back(std::move(way));
+  }
+
+  static Instruction branch(std::uint32_t to) {
+    Instruction out = Instruction::of_words(spv::OpBranch, {to});
+    out.ids = {1};
+    return out;
+  }
+
+  /// New names for what some blocks make.
+  Renaming copies(const Range& range, const Labels& blocks) {
+    Renaming out;
+    std::uint32_t label = 0;
+    for (std::size_t at = range.begin; at < range.end; ++at) {
+      const Instruction& i = module_.code[at];
+      if (i.op == spv::OpLabel) label = i.result;
+      if (i.result == 0) continue;
+      auto& names = copies_[i.result];
+      if (blocks.contains(label)) names.push_back(out[i.result] = module_.fresh());
+    }
+    return out;
+  }
+
+  /// `precise` and the like hold for every copy; names go with what they named.
+  void decorate_copies() {
+    std::vector<Instruction> code;
+    for (auto& i : module_.code) {
+      const bool about = (i.op == spv::OpName || i.op == spv::OpDecorate) && copies_.contains(i.words[1]);
+      if (about && i.op == spv::OpDecorate) decorate(i, i.words[1], code);
+      if (!about) code.push_back(std::move(i));
+    }
+    module_.code = std::move(code);
+    copies_.clear();
+  }
+  void decorate(const Instruction& decoration, std::uint32_t id, std::vector<Instruction>& code) const {
+    if (const auto copies = copies_.find(id); copies != copies_.end()) {
+      for (const auto copy : copies->second) decorate(decoration, copy, code);
+      return;
+    }
+    code.push_back(decoration);
+    code.back().words[1] = id;
+  }
+
+  Module module_;
+  FunctionWeights functions_;
+  std::uint64_t most_, more_ = 0;
+  std::map<std::uint32_t, std::uint32_t> origins_;              ///< header → which of the loops before
+  std::map<std::uint32_t, std::vector<std::uint32_t>> copies_;  ///< of what is gone
+  Labels tried_, made_;                                         ///< headers; blocks of the loop that is being unrolled
+};
+
+}  // namespace
+
+ArraysUnrolled unroll_over_arrays(std::vector<std::uint32_t> spirv, int rows) {
+  auto module = parse(spirv);
+  if (!module) return {std::move(spirv), {}};
+  return Unroller(std::move(*module), rows).run();
+}
+
+}  // namespace afterglow
