@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "apps/bake.h"
 #include "apps/command.h"
@@ -20,6 +21,8 @@ struct BakeArguments {
   DeviceArguments device;
   std::string output, shaper = "none";
   int size = 33;
+  std::optional<double> frame;
+  double fps = 24;
 };
 
 /// The settings of an effect that loads the table; empty where none does.
@@ -33,7 +36,10 @@ std::string use_text(const BakeArguments& a, Shaper shaper, const std::string& e
 Result<void> run_bake(const BakeArguments& a, Console& console) {
   const Shaper shaper = a.shaper == "log" ? Shaper::log : Shaper::none;
   AFTERGLOW_TRY(const std::string extension, cube_extension(a.output));
-  AFTERGLOW_TRY(const Look look, load_look(a.preset, {}, console));
+  AssumedPicture assumed;
+  assumed.frame = a.frame.value_or(assumed.frame);
+  assumed.fps = a.fps;
+  AFTERGLOW_TRY(const Look look, load_look(a.preset, assumed, console));
   if (const auto refused = unbakeable(look); !refused.empty())
     return Error{ErrorKind::script,
                  fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
@@ -47,13 +53,16 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
   options.stack.reference = true;
   AFTERGLOW_TRY(const std::filesystem::path file, a.preset.preset_file());
   AFTERGLOW_TRY(const auto session, Session::open(file, options, console.diagnostics()));
-  const Through through = [&](Picture& colours) { return session->process(colours); };
+  const BuildContext moment = usual_context(*look.preset, {}, assumed.frame, assumed.fps);
+  const Through through = [&](Picture& colours) { return session->process(colours, moment); };
   AFTERGLOW_TRY(const Cube cube, bake_cube(a.size, shaper, through));
   AFTERGLOW_TRY(const BakeError error, bake_error(cube, 20000, through));
   AFTERGLOW_CHECK(write_cube(cube, look.preset->name(), a.output));
   const bool brings_down = std::ranges::any_of(look.spaces, [](const EntrySpace& s) { return s.behind != s.before; });
   if (shaper == Shaper::none && brings_down)
     console.warning("the look takes scene light, but the table cuts off what is above 1; --shaper log takes it");
+  if (look.preset->may_change() && !a.frame)
+    console.warning("the look may change from frame to frame, a table does not: it is that of frame 1; --frame chooses");
   fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
              shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
   fmt::print("{}", use_text(a, shaper, extension));
@@ -78,8 +87,13 @@ Command add_bake_command(CLI::App& program) {
                   "Rec.709)")
       ->check(CLI::IsMember({"none", "log"}))
       ->type_name("SHAPER");
+  app->add_option("--frame", arguments->frame, "Number of the frame whose look it is, of looks that move (default 1)")
+      ->type_name("N");
+  app->add_option("--fps", arguments->fps, "Frames a second, for animated presets (default 24)")
+      ->check(frame_rates())
+      ->type_name("N");
   app->footer(
-      "The table gives sRGB codes of a display. Effects that look around, at places or at other frames are refused.\n"
+      "The table gives sRGB codes of a display. Effects that look around, at places or back are refused.\n"
       "Example: afterglow bake look.lua -o look.cube --size 33 --shaper log");
   return {app, [arguments](Console& console) { return run_bake(*arguments, console); }};
 }

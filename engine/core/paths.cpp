@@ -151,9 +151,13 @@ std::vector<fs::path> folders_of(const fs::path& preset, FileRecord* record) {
   std::vector<fs::path> folders{preset.has_parent_path() ? preset.parent_path() : fs::path(".")};
   const fs::path above = folders[0].parent_path();
   if (folders[0].filename() != "presets") return folders;
-  if (record) record->note(above / "effects", FileProbe::Kind::existence);
-  std::error_code ec;
-  if (fs::is_directory(above / "effects", ec)) folders.push_back(above);
+  bool is_pack = false;
+  for (const char* const part : {"effects", "shaders", "luts"}) {
+    if (record) record->note(above / part, FileProbe::Kind::existence);
+    std::error_code ec;
+    is_pack |= fs::is_directory(above / part, ec);
+  }
+  if (is_pack) folders.push_back(above);
   return folders;
 }
 

@@ -56,7 +56,7 @@ struct SearchPath {
 std::filesystem::path find_installation();
 
 /// The folders that belong to a preset: its own; of a preset in `presets/`, also the one above when that holds
-/// `effects/`.
+/// `effects/`, `shaders/` or `luts/`.
 std::vector<std::filesystem::path> folders_of_preset(const std::filesystem::path& preset);
 
 /// Search path for a preset file; `extra` are the --path options. AFTERGLOW_PATH is split at ':'. Both may name zips.

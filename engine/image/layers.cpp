@@ -248,21 +248,22 @@ std::optional<std::vector<int>> motion_of(const Layer& l, bool certain) {
   return std::nullopt;
 }
 
-/// Candidates in order of nearness to the colour layer: its own view layer, then plain ones, then the rest.
+/// Candidates in order of nearness to the colour layer: itself, its eye of a stereo picture ("depth.right" beside
+/// "rgba.right"; in the same view layer first), its view layer, plain ones, the rest.
 std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const ChannelChoice* color) {
-  std::string group;
-  bool known = false;
-  if (color) {
-    for (const Layer& layer : layers) {
-      if (layer.part != color->part ||
-          std::find(layer.channels.begin(), layer.channels.end(), color->channels[0]) == layer.channels.end())
-        continue;
-      group = layer.group;
-      known = true;
-    }
-  }
+  const Layer* own = nullptr;
+  for (const Layer& layer : layers)
+    if (color && layer.part == color->part &&
+        std::ranges::find(layer.channels, color->channels[0]) != layer.channels.end())
+      own = &layer;
+  const auto first = [](const Layer& l) { return l.name.substr(0, l.name.find('.')); };
+  const auto distance = [&](const Layer* l) {
+    if (!own) return l->group.empty() ? 4 : 5;
+    if (l == own) return 0;
+    if (l->last == own->last && !own->last.empty()) return first(*l) == first(*own) ? 1 : 2;
+    return l->group == own->group ? 3 : l->group.empty() ? 4 : 5;
+  };
   std::vector<const Layer*> sorted = all_of(layers);
-  const auto distance = [&](const Layer* l) { return known && l->group == group ? 0 : l->group.empty() ? 1 : 2; };
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](const Layer* a, const Layer* b) { return distance(a) < distance(b); });
   return sorted;

@@ -22,6 +22,14 @@ const char* number_format(const SettingSchema& schema) {
   return "%.3f";
 }
 
+// A factor's digits are those that count; near zero the last decimal place says where the slider begins to be even.
+const char* slider_format(const SettingSchema& schema) {
+  return is_logarithmic(schema) && *schema.min >= 0 ? "%.4g" : number_format(schema);
+}
+ImGuiSliderFlags slider_flags(const SettingSchema& schema) {
+  return is_logarithmic(schema) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
+}
+
 // How far a pixel of a drag goes, where there is no range to slide in.
 float drag_speed(double value) { return static_cast<float>(std::max(0.005, std::abs(value) * 0.01)); }
 
@@ -34,12 +42,9 @@ double held(const SettingSchema& schema, double value) {
 
 // Dragged values are those that the row shows, so that presets get 0.176 and not 0.17600000053644177. Typed ones stay.
 bool number_row(const char* name, const SettingSchema& schema, double& value) {
-  if (schema.min && schema.max) {
-    const bool by_factors = is_logarithmic(schema);
-    return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &*schema.min, &*schema.max,
-                               by_factors ? "%.4g" : number_format(schema),
-                               by_factors ? ImGuiSliderFlags_Logarithmic : 0);
-  }
+  if (schema.min && schema.max)
+    return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &*schema.min, &*schema.max, slider_format(schema),
+                               slider_flags(schema));
   return ImGui::DragScalar(name, ImGuiDataType_Double, &value, drag_speed(value), nullptr, nullptr, "%.3f");
 }
 
@@ -70,11 +75,9 @@ bool choice_row(const char* name, const SettingSchema& schema, std::string& choi
 }
 
 bool vector_row(const char* name, const SettingSchema& schema, std::array<double, 3>& number, int count) {
-  const bool by_factors = is_logarithmic(schema);
   if (schema.min && schema.max)
     return ImGui::SliderScalarN(name, ImGuiDataType_Double, number.data(), count, &*schema.min, &*schema.max,
-                                by_factors ? "%.4g" : number_format(schema),
-                                by_factors ? ImGuiSliderFlags_Logarithmic : 0);
+                                slider_format(schema), slider_flags(schema));
   return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), count, 0.01f, nullptr, nullptr, "%.3f");
 }
 
@@ -121,7 +124,9 @@ bool is_logarithmic(const SettingSchema& schema) {
   const std::size_t count = number_count(schema.type);
   const bool real =
       schema.type == SettingType::number || schema.type == SettingType::vec2 || schema.type == SettingType::vec3;
-  if (!real || !schema.min || !schema.max || *schema.min < 0) return false;
+  if (!real || !schema.min || !schema.max) return false;
+  constexpr double kManyStops = 20;
+  if (*schema.min < 0) return schema.unit == "EV" && *schema.max > 0 && *schema.max - *schema.min >= kManyStops;
   if (*schema.max > 100 && (*schema.min == 0 || *schema.max / *schema.min > 100)) return true;
   // What is usual would be a few pixels at one end.
   const auto& usual = schema.default_value.number;

@@ -16,7 +16,8 @@ std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const Setti
                                            const SettingValue& value, float width);
 
 /// Does a slider over the setting's range move by factors? Where it spans more than two decades above 0, or begins at 0
-/// and the default is a small part of it. Vectors as numbers.
+/// and the default is a small part of it. So it does to both sides of 0 where it spans many stops: what is set are a few.
+/// Vectors as numbers.
 bool is_logarithmic(const SettingSchema& schema);
 
 }  // namespace afterglow

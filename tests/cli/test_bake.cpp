@@ -70,6 +70,20 @@ TEST_F(Bake, PicturesAndCodes) {
               HasSubstr("# sRGB codes to sRGB codes of a display\nTITLE \"Warm & soft\"\nLUT_3D_SIZE 33\n"));
 }
 
+TEST_F(Bake, ATableIsOfOneFrame) {
+  write(
+      "moves.lua",
+      "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = fx.curve { { 1, 0 }, { 24, -2 } } } }\n");
+  const Outcome first = run({"bake", "moves.lua", "-o", "first.cube", "--size", "2"});
+  ASSERT_EQ(first.exit_code, kDone) << first.err;
+  EXPECT_THAT(first.err, HasSubstr("it is that of frame 1"));
+  const Outcome last = run({"bake", "moves.lua", "-o", "last.cube", "--size", "2", "--frame", "24"});
+  ASSERT_EQ(last.exit_code, kDone) << last.err;
+  EXPECT_THAT(last.err, IsEmpty());
+  EXPECT_THAT(read("first.cube"), HasSubstr("1.0000000 1.0000000 1.0000000"));
+  EXPECT_THAT(read("last.cube"), HasSubstr("0.5370987 0.5370987 0.5370987"));  // sRGB of a quarter
+}
+
 TEST_F(Bake, EffectsThatLookAroundAreRefusedByName) {
   write("wide.lua",
         "local fx = require \"afterglow\"\nreturn fx.stack { fx.bloom {}, fx.vignette {}, fx.tone_mapping {}, "

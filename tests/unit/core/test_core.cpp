@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -171,6 +172,17 @@ TEST_F(Folder, SearchPathPrefersTheUser) {
   ASSERT_EQ(hits.size(), 2u);
   EXPECT_EQ(hits[0], folder_ / "user" / "effects" / "bloom.lua");
   EXPECT_TRUE(path.find_effect("glow").empty());
+}
+
+TEST_F(Folder, APackAroundAPresetIsOnItsPath) {
+  const fs::path preset = folder_ / "look" / "presets" / "a.lua";
+  fs::create_directories(preset.parent_path());
+  EXPECT_THAT(folders_of_preset(preset), testing::ElementsAre(preset.parent_path()));
+  for (const char* const part : {"effects", "shaders", "luts"}) {
+    fs::create_directories(folder_ / "look" / part);
+    EXPECT_THAT(folders_of_preset(preset), testing::ElementsAre(preset.parent_path(), folder_ / "look")) << part;
+    fs::remove(folder_ / "look" / part);
+  }
 }
 
 TEST(Diagnostics, WarnsOncePerKey) {

@@ -66,7 +66,8 @@ TEST(Layers, PlainNames) {
 
 TEST(Layers, SeveralThatLookAlikeAreTold) {
   const auto equal = [](const std::vector<std::string>& channels) {
-    return equal_colors({{.name = "", .channels = channels, .data_window = {}, .display_window = {}, .unreadable = ""}});
+    return equal_colors(
+        {{.name = "", .channels = channels, .data_window = {}, .display_window = {}, .unreadable = ""}});
   };
   EXPECT_THAT(equal({"diffuse.R", "diffuse.G", "diffuse.B", "specular.R", "specular.G", "specular.B"}),
               testing::ElementsAre("diffuse", "specular"));
@@ -98,6 +99,26 @@ TEST(Layers, DepthOfTheColoursOwnViewLayer) {
   const auto front = find_color(parts, "Front").value();
   EXPECT_THAT(chosen(parts, front), ElementsAre("Front.Combined.R", "Front.Combined.G", "Front.Combined.B", "-"));
   EXPECT_THAT(chosen(parts, *find_depth(parts, "", &front).value()), ElementsAre("Front.Depth.Z"));
+}
+
+TEST(Layers, DepthOfTheColoursOwnEye) {
+  const std::vector<FilePart> parts{part({"R", "G", "B"}, "rgba.left"), part({"Z"}, "depth.left"),
+                                    part({"R", "G", "B"}, "rgba.right"), part({"Z"}, "depth.right")};
+  const std::vector<FilePart> one{part({"R", "G", "B", "Z", "depth.right.Z", "right.R", "right.G", "right.B"})};
+  const std::vector<FilePart> own{part({"R", "G", "B", "Z", "right.R", "right.G", "right.B", "right.Z"})};
+  const std::vector<FilePart> layers{
+      part({"A.Combined.left.R", "A.Combined.left.G", "A.Combined.left.B", "A.Combined.right.R", "A.Combined.right.G",
+            "A.Combined.right.B", "A.Depth.left.Z", "A.Depth.right.Z", "B.Depth.right.Z"})};
+  const auto of = [](const std::vector<FilePart>& file, const std::string& layer) {
+    const ChannelChoice colour = find_color(file, layer).value();
+    return chosen(file, *find_depth(file, "", &colour).value());
+  };
+  EXPECT_THAT(of(parts, "rgba.left"), ElementsAre("depth.left/Z"));
+  EXPECT_THAT(of(parts, "rgba.right"), ElementsAre("depth.right/Z"));
+  EXPECT_THAT(of(one, ""), ElementsAre("Z"));
+  EXPECT_THAT(of(one, "right"), ElementsAre("depth.right.Z"));
+  EXPECT_THAT(of(own, "right"), ElementsAre("right.Z"));
+  EXPECT_THAT(of(layers, "A.Combined.right"), ElementsAre("A.Depth.right.Z"));
 }
 
 TEST(Layers, ByName) {

@@ -32,6 +32,9 @@ TEST(SettingWidget, SlidersByFactorsWhereTheRangeIsWide) {
   EXPECT_TRUE(is_logarithmic(schema));
   schema.min = -1000;
   EXPECT_FALSE(is_logarithmic(schema));
+  schema.unit = "EV";
+  EXPECT_TRUE(is_logarithmic(schema)) << "to both sides of 0";
+  schema.unit = "";
   schema.min = 0;
   schema.type = SettingType::vec2;
   EXPECT_TRUE(is_logarithmic(schema));
