@@ -17,6 +17,7 @@ namespace afterglow {
 namespace {
 
 constexpr std::uint64_t kMostTurns = 64;
+constexpr std::size_t kMostTrials = 16, kMostLoops = 48;  ///< of a kernel: to find out takes time itself
 constexpr std::uint64_t kMostMore = 8192;      ///< operations that a kernel has more than before, for each row
 constexpr std::uint64_t kMostTried = 32768;    ///< of a loop, before anything is known of its turns
 constexpr std::uint64_t kWorthOfAccess = 256;  ///< operations beside which memory does not count
@@ -117,25 +118,38 @@ class FunctionWeights {
 
 using Labels = std::set<std::uint32_t>;
 
-/// Arrays, vectors and matrices of a shader's own that blocks step through, by an index that is no constant, and at how
-/// many places.
-std::map<std::uint32_t, std::uint64_t> stepped_through(const Module& module, const Labels& blocks) {
-  std::set<std::uint32_t> own, constants;
-  std::map<std::uint32_t, std::uint64_t> out;
-  std::uint32_t label = 0;
-  for (const auto& i : module.code) {
-    if (i.op == spv::OpConstant) constants.insert(i.result);
-    const bool variable =
-        i.op == spv::OpVariable && (i.words[3] == spv::StorageClassFunction || i.words[3] == spv::StorageClassPrivate);
-    if (variable || i.op == spv::OpFunctionParameter) own.insert(i.result);
-    if (i.op == spv::OpFunctionEnd) label = 0;
-    if (i.op == spv::OpLabel) label = i.result;
-    if (i.op != spv::OpAccessChain || !own.contains(i.words[3]) || !blocks.contains(label)) continue;
-    if (std::any_of(i.words.begin() + 4, i.words.end(), [&](auto index) { return !constants.contains(index); }))
-      ++out[i.words[3]];
+/// Arrays, vectors and matrices, and at how many places they are stepped through.
+using Arrays = std::map<std::uint32_t, std::uint64_t>;
+
+/// Where a shader steps through arrays, vectors and matrices of its own: by an index that is no constant.
+class Steps {
+ public:
+  explicit Steps(const Module& module) {
+    std::set<std::uint32_t> own, constants;
+    std::uint32_t label = 0;
+    for (const auto& i : module.code) {
+      if (i.op == spv::OpConstant) constants.insert(i.result);
+      const bool variable = i.op == spv::OpVariable &&
+                            (i.words[3] == spv::StorageClassFunction || i.words[3] == spv::StorageClassPrivate);
+      if (variable || i.op == spv::OpFunctionParameter) own.insert(i.result);
+      if (i.op == spv::OpLabel) label = i.result;
+      if (i.op != spv::OpAccessChain || !own.contains(i.words[3])) continue;
+      if (std::any_of(i.words.begin() + 4, i.words.end(), [&](auto index) { return !constants.contains(index); }))
+        ++by_block_[label][i.words[3]];
+    }
   }
-  return out;
-}
+  bool none() const { return by_block_.empty(); }
+  Arrays within(const Labels& blocks) const {
+    Arrays out;
+    for (const auto& [block, arrays] : by_block_)
+      if (blocks.contains(block))
+        for (const auto& [array, count] : arrays) out[array] += count;
+    return out;
+  }
+
+ private:
+  std::map<std::uint32_t, Arrays> by_block_;
+};
 
 /// Where the blocks of a loop stand, one behind the other.
 struct Range {
@@ -178,19 +192,20 @@ std::optional<Range> range_of(const Module& module, const Loop& loop) {
 class Unroller {
  public:
   Unroller(Module module, int rows)
-      : module_(std::move(module)), functions_(module_), most_(saturated_product({kMostMore, bits(rows)})) {
+      : module_(std::move(module)),
+        functions_(module_),
+        most_(kMostMore * static_cast<std::uint64_t>(std::max(rows, 1))) {
     for (const auto& loop : find_loops(module_)) origins_[loop.header] = loop.ordinal;
   }
 
   ArraysUnrolled run() {
-    while (try_one()) functions_ = FunctionWeights(module_);
+    while (origins_.size() <= kMostLoops && try_one()) functions_ = FunctionWeights(module_);
     ArraysUnrolled out{module_.join(), {}};
     for_each_loop(module_, [&](std::uint32_t header) { out.loops.push_back(origins_.at(header)); });
     return out;
   }
 
  private:
-  static std::uint64_t bits(int rows) { return static_cast<std::uint64_t>(std::max(rows, 1)); }
   static bool is_short(const Loop& loop) {
     return loop.counting && loop.counting->turns && *loop.counting->turns > 0 && *loop.counting->turns <= kMostTurns;
   }
@@ -219,41 +234,49 @@ class Unroller {
 
   /// Unrolls one of the loops, with all that is within it. False: there is none left to be tried.
   bool try_one() {
+    const Steps steps(module_);
+    if (steps.none()) return false;
     for (const auto& loop : find_loops(module_)) {
-      if (!is_short(loop) || !tried_.insert(loop.header).second) continue;
-      const auto arrays = stepped_through(module_, loop.blocks);
+      if (!is_short(loop) || tried_.contains(loop.header)) continue;
+      const Arrays arrays = steps.within(loop.blocks);
       if (arrays.empty()) continue;
+      if (tried_.size() == kMostTrials) return false;
+      tried_.insert(loop.header);
       Unroller trial = *this;
-      const std::uint32_t function = module_.code[loop.function].result;
-      if (!trial.unroll_all_within(loop, function)) continue;
-      trial.decorate_copies();
-      trial.drop_dead_branches();
-      // Copies of loops are more for a driver than an array in memory.
-      if (std::ranges::any_of(find_loops(trial.module_), [&](const Loop& l) { return trial.made_.contains(l.header); }))
-        continue;
-      const auto left = stepped_through(trial.module_, trial.made_);
-      const auto is_left = [&](const auto& array) { return left.contains(array.first); };
-      if (std::ranges::all_of(arrays, is_left) || !trial.pay(function)) continue;
-      trial.made_.clear();
+      if (!trial.unrolls(loop, arrays)) continue;
       *this = std::move(trial);
       return true;
     }
     return false;
   }
 
+  /// False: that is not possible, or does not pay; it is left in some state then.
+  bool unrolls(const Loop& loop, const Arrays& arrays) {
+    const std::uint32_t function = module_.code[loop.function].result;
+    if (!unroll_all_within(loop, function)) return false;
+    decorate_copies();
+    drop_dead_branches();
+    // Copies of loops are more for a driver than an array in memory.
+    if (std::ranges::any_of(find_loops(module_), [&](const Loop& l) { return made_.contains(l.header); })) return false;
+    const Arrays left = Steps(module_).within(made_);
+    const auto is_left = [&](const auto& array) { return left.contains(array.first); };
+    return !std::ranges::all_of(arrays, is_left) && pay(function);
+  }
+
   bool unroll_all_within(const Loop& outermost, std::uint32_t function) {
     made_ = {outermost.header};
     for (bool any = true; any;) {
       any = false;
+      const Steps steps(module_);
       std::vector<Loop> now;  // none within another
       for (auto& loop : find_loops(module_)) {
         const bool within = std::ranges::any_of(now, [&](const Loop& o) { return o.blocks.contains(loop.header); });
-        if (!within && made_.contains(loop.header) && is_short(loop) && !stepped_through(module_, loop.blocks).empty())
+        if (!within && made_.contains(loop.header) && is_short(loop) && !steps.within(loop.blocks).empty())
           now.push_back(std::move(loop));
       }
       for (auto loop = now.rbegin(); loop != now.rend(); ++loop) {  // what stands before keeps its place
         const auto range = range_of(module_, *loop);
-        if (!range || !is_light(*loop, *range)) return false;
+        if (!range || !is_light(*loop, *range, steps.within(loop->blocks))) return false;
         unroll(*loop, *range);
         any = true;
       }
@@ -268,13 +291,13 @@ class Unroller {
   }
 
   /// Before it is tried: a body that is not much beside the memory that goes, not too often.
-  bool is_light(const Loop& loop, const Range& range) {
+  bool is_light(const Loop& loop, const Range& range, const Arrays& arrays) {
     std::uint64_t weight = 0, accesses = 0;
     for (std::size_t at = range.begin; at < range.end; ++at) {
       if (functions_.turns(module_.code[at])) return false;
       weight = saturated_sum({weight, functions_.weight(module_.code[at])});
     }
-    for (const auto& [array, count] : stepped_through(module_, loop.blocks)) accesses += count;
+    for (const auto& [array, count] : arrays) accesses += count;
     return weight / kWorthOfAccess < accesses && saturated_product({weight, *loop.counting->turns}) <= kMostTried;
   }
 

@@ -18,8 +18,9 @@ struct ArraysUnrolled {
   std::vector<std::uint32_t> loops;  ///< for each OpLoopMerge, in order: which of those of the module before it was
 };
 
-/// Results are the same bits. Loops that would become too long, that are left elsewhere than by their test, within which
-/// others turn that stay, or whose indices are not known either way, are left as they are. `rows`: how many times over the kernel does all of its work.
+/// Results are the same bits. Loops that would become too long, that are left elsewhere than by their test, within
+/// which others turn that stay, or whose indices are not known either way, are left as they are; so are all beyond some
+/// tens. `rows`: how many times over the kernel does all of its work.
 ArraysUnrolled unroll_over_arrays(std::vector<std::uint32_t> spirv, int rows);
 
 }  // namespace afterglow

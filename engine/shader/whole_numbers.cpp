@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "shader/spirv_loops.h"
@@ -156,7 +157,9 @@ class Folder {
   using Known = std::map<std::uint32_t, std::uint32_t>;  ///< variable → constant that it holds
   struct Number {
     std::uint32_t type = 0, value = 0;
-    auto operator<=>(const Number&) const = default;
+    friend bool operator<(const Number& a, const Number& b) {
+      return std::tie(a.type, a.value) < std::tie(b.type, b.value);
+    }
   };
 
   void declaration(const Instruction& i) {
