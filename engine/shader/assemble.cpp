@@ -233,8 +233,9 @@ class Assembler {
     } else {
       AFTERGLOW_TRY(const std::string code,
                     filter_anchor(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.config.hardware_filter));
-      head_function_ = "vec4 ag_filter(ivec2 ag_pixel) {\n  vec4 ag_color;\n" + code + "  return ag_color;\n}\n";
-      every_row("vec4 ag_color{0} = ag_filter(ag_pixel{0});");
+      head_function_ = fmt::format("vec4 {}(ivec2 ag_pixel) {{\n  vec4 ag_color;\n{}  return ag_color;\n}}\n",
+                                   kFilterFunction, code);
+      every_row(fmt::format("vec4 ag_color{{0}} = {}(ag_pixel{{0}});", kFilterFunction));
     }
     return {};
   }

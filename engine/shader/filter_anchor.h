@@ -4,11 +4,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/result.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
+
+/// What assembled kernels call the function of these statements, where it is no part of main().
+inline constexpr std::string_view kFilterFunction = "ag_filter";
 
 /// Statements for main(); they use ag_pixel, ag_image0 and the push constants, and set ag_color. Independent of image
 /// sizes. Errors (script): no taps, weights or offsets that are not finite, more texel reads than a kernel should have.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/saturated.h"
+#include "shader/filter_anchor.h"
 #include "shader/spirv_loops.h"
 #include "shader/spirv_module.h"
 #include "shader/spirv_passes.h"
@@ -194,7 +195,8 @@ class Unroller {
   Unroller(Module module, int rows)
       : module_(std::move(module)),
         functions_(module_),
-        most_(kMostMore * static_cast<std::uint64_t>(std::max(rows, 1))) {
+        most_(kMostMore * static_cast<std::uint64_t>(std::max(rows, 1))),
+        filters_{function_named(module_, "main"), function_named(module_, kFilterFunction)} {
     for (const auto& loop : find_loops(module_)) origins_[loop.header] = loop.ordinal;
   }
 
@@ -237,7 +239,8 @@ class Unroller {
     const Steps steps(module_);
     if (steps.none()) return false;
     for (const auto& loop : find_loops(module_)) {
-      if (!is_short(loop) || tried_.contains(loop.header)) continue;
+      if (!is_short(loop) || tried_.contains(loop.header) || filters_.contains(module_.code[loop.function].result))
+        continue;
       const Arrays arrays = steps.within(loop.blocks);
       if (arrays.empty()) continue;
       if (tried_.size() == kMostTrials) return false;
@@ -407,7 +410,8 @@ class Unroller {
   Module module_;
   FunctionWeights functions_;
   std::uint64_t most_, more_ = 0;
-  std::map<std::uint32_t, std::uint32_t> origins_;              ///< header → which of the loops before
+  std::set<std::uint32_t> filters_;                 ///< functions with the loops over the taps of filters, which stay
+  std::map<std::uint32_t, std::uint32_t> origins_;  ///< header → which of the loops before
   std::map<std::uint32_t, std::vector<std::uint32_t>> copies_;  ///< of what is gone
   Labels tried_, made_;                                         ///< headers; blocks of the loop that is being unrolled
 };

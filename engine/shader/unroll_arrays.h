@@ -20,7 +20,8 @@ struct ArraysUnrolled {
 
 /// Results are the same bits. Loops that would become too long, that are left elsewhere than by their test, within
 /// which others turn that stay, or whose indices are not known either way, are left as they are; so are all beyond some
-/// tens. `rows`: how many times over the kernel does all of its work.
+/// tens, and those over the taps of filters: they are loops because many taps take long to compile. `rows`: how many
+/// times over the kernel does all of its work.
 ArraysUnrolled unroll_over_arrays(std::vector<std::uint32_t> spirv, int rows);
 
 }  // namespace afterglow

@@ -162,5 +162,17 @@ TEST(UnrollArrays, OtherLoopsStay) {
       1);
 }
 
+TEST(UnrollArrays, TapsOfFiltersStay) {
+  Filter filter;
+  filter.x.clear();
+  for (int i = 0; i < 12; ++i) filter.x.push_back({i - 6.0, 1.0 / 12});
+  filter.y = filter.x;
+  KernelDesc desc;
+  desc.filter = filter;
+  const auto made = KernelCompiler({}).compile(desc);
+  ASSERT_TRUE(made) << made.error().text();
+  EXPECT_EQ(loops_in(made->spirv), 1);
+}
+
 }  // namespace
 }  // namespace afterglow
