@@ -7,7 +7,6 @@
 #include "exec/frame_runner_state.h"
 
 namespace afterglow {
-
 namespace {
 
 bool makes_result(const Program& program, std::size_t kernel) {

@@ -32,10 +32,6 @@ std::uint64_t inlined_calls(std::map<std::uint32_t, Calls>& functions, std::uint
   return calls.inlined;
 }
 
-void be_quiet(spvtools::Optimizer& optimizer) {
-  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
-}
-
 /// Instructions of each block, by label. A function of GLSL (sin, pow) is many to the device's compiler.
 std::map<std::uint32_t, std::uint64_t> block_sizes(const Module& module) {
   constexpr std::uint64_t kOfFunction = 32;
@@ -86,6 +82,10 @@ bool mark_short_loops(Module& module) {
 }
 
 }  // namespace
+
+void be_quiet(spvtools::Optimizer& optimizer) {
+  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+}
 
 std::uint32_t function_named(const Module& module, std::string_view name) {
   for (const auto& instruction : module.code) {

@@ -12,6 +12,9 @@
 
 namespace afterglow {
 
+/// What it has to say of a module is for nobody.
+void be_quiet(spvtools::Optimizer& optimizer);
+
 /// One that says nothing, with the passes that inline all functions and turn variables of every scope into values, as
 /// far as single writes go. Callers add what they need behind them.
 void add_inlining_passes(spvtools::Optimizer& optimizer);

@@ -224,7 +224,7 @@ class Unroller {
   /// Those that a turn was left by, and others that its number decides.
   void drop_dead_branches() {
     spvtools::Optimizer optimizer(kSpirvEnvironment);
-    optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+    be_quiet(optimizer);
     // Twice: what could be left from within goes once what is within it has gone.
     optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass()).RegisterPass(spvtools::CreateDeadBranchElimPass());
     auto left = run_passes(optimizer, module_);
