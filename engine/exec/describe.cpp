@@ -118,6 +118,10 @@ const Pass& pass_of_stage(const Graph& graph, const PlanKernel& kernel, int stag
   return graph.passes[kernel.passes[static_cast<std::size_t>(index)]];
 }
 
+bool may_compile_apart(const Error& error, const ExecutionConfig& config) {
+  return error.kind == ErrorKind::script && config.fusion == Fusion::all;
+}
+
 Result<std::vector<ImageId>> images_of_slots(const Graph& graph, const PlanKernel& kernel,
                                              const CompiledKernel& compiled) {
   std::vector<ImageId> images;

@@ -17,6 +17,10 @@ namespace afterglow {
 Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
                                    const ProgramOptions& options);
 
+/// Whether passes that do not compile as one kernel may do so apart: shaders have limits of what they hold
+/// (docs/writing_effects.md), which each of them may keep and all together not.
+bool may_compile_apart(const Error& error, const ExecutionConfig& config);
+
 /// The pass that a stage of the kernel (AssembledKernel::ImageSlot::stage, KernelParam::stage) is.
 const Pass& pass_of_stage(const Graph& graph, const PlanKernel& kernel, int stage);
 

@@ -64,7 +64,7 @@ Error LoopWatch::error() const {
     error.file = kernel.loops[told_ - 1].file;
     error.line = kernel.loops[told_ - 1].line;
   }
-  error.allowed = fmt::format("at most {} turns of all loops together", kMaxLoopTurns);
+  error.allowed = fmt::format("at most {} turns of all loops of a pass", kMaxLoopTurns);
   return error;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "exec/describe.h"
 #include "exec/program_state.h"
 #include "graph/history.h"
 
@@ -33,13 +34,16 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
     AFTERGLOW_CHECK(state->find_parts());
   } else {
     AFTERGLOW_TRY(std::vector<KernelDesc> descs, state->describe(shaders));
-    AFTERGLOW_CHECK(state->settle_rows(compiler, descs));
-    AFTERGLOW_CHECK(state->make_images(descs));
-    AFTERGLOW_CHECK(state->compile(compiler, descs));
-    if (state->share_too_much()) {
-      ProgramOptions drawn = options;
-      drawn.config.compute = false;
-      return create(device, shaders, compiler, graph, drawn);
+    const auto compiled = state->settle_and_compile(compiler, descs);
+    if (!compiled && !may_compile_apart(compiled.error(), options.config)) return compiled.error();
+    if (!compiled || state->share_too_much()) {
+      ProgramOptions other = options;
+      if (compiled)
+        other.config.compute = false;
+      else
+        other.config.fusion = Fusion::filters;
+      state.reset();
+      return create(device, shaders, compiler, graph, other);
     }
     AFTERGLOW_CHECK(state->find_parts());
     state->identify();

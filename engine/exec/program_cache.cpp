@@ -69,31 +69,61 @@ bool same_program(const FrameWork& a, const FrameWork& b) {
          same_structure(a.graph, b.graph) && (!a.region || same_reach(a.graph, b.graph));
 }
 
+namespace {
+
+/// Compiles the kernels of one plan.
+class KernelCheck {
+ public:
+  KernelCheck(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph, std::set<Hash>& checked)
+      : shaders_(shaders), compiler_(compiler), graph_(graph), checked_(checked) {}
+
+  void run(const ProgramOptions& options) {
+    for (const auto& kernel : make_plan(graph_, options.config).kernels) {
+      if (options.config.compute && !kernel.workgroups) continue;
+      auto good = compile(kernel, options);
+      if (good) continue;
+      if (kernel.passes.size() > 1 && may_compile_apart(good.error(), options.config)) return run_apart(options);
+      found.errors.push_back(shaders_.with_known_names(std::move(good).error()));
+    }
+  }
+  ShaderFindings found;
+
+ private:
+  void run_apart(ProgramOptions options) {
+    options.config.fusion = Fusion::filters;
+    run(options);
+  }
+  Result<void> compile(const PlanKernel& kernel, const ProgramOptions& options) {
+    AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders_, graph_, kernel, options));
+    if (std::ranges::any_of(seen_, [&](const KernelDesc& other) { return same_kernel(other, desc); })) return {};
+    seen_.push_back(std::move(desc));
+    AFTERGLOW_TRY(AssembledKernel assembled, assemble(seen_.back()));
+    if (!checked_.insert(assembled.hash).second) return {};
+    AFTERGLOW_TRY(const CompiledKernel compiled, compiler_.compile(seen_.back(), std::move(assembled)));
+    found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
+    return {};
+  }
+
+  ShaderLibrary& shaders_;
+  KernelCompiler& compiler_;
+  const Graph& graph_;
+  std::set<Hash>& checked_;
+  std::vector<KernelDesc> seen_;  // most levels of a pyramid are described alike
+};
+
+}  // namespace
+
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
                              const ExecutionConfig& config, std::set<Hash>& checked) {
   ProgramOptions options{.config = config, .inputs_are_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   options.config.guard_loops = true;
-  ShaderFindings found;
-  std::vector<KernelDesc> seen;               // most levels of a pyramid are described alike
+  KernelCheck check(shaders, compiler, work.graph, checked);
   for (const bool compute : {false, true}) {  // both ways of passes that have two
     options.config.compute = compute;
-    for (const auto& kernel : make_plan(work.graph, options.config).kernels) {
-      if (compute && !kernel.workgroups) continue;
-      const auto check = [&]() -> Result<void> {
-        AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
-        if (std::ranges::any_of(seen, [&](const KernelDesc& other) { return same_kernel(other, desc); })) return {};
-        seen.push_back(std::move(desc));
-        AFTERGLOW_TRY(AssembledKernel assembled, assemble(seen.back()));
-        if (!checked.insert(assembled.hash).second) return {};
-        AFTERGLOW_TRY(const CompiledKernel compiled, compiler.compile(seen.back(), std::move(assembled)));
-        found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
-        return {};
-      };
-      if (auto good = check(); !good) found.errors.push_back(shaders.with_known_names(std::move(good).error()));
-    }
+    check.run(options);
   }
-  return found;
+  return std::move(check.found);
 }
 
 Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders) {

@@ -228,6 +228,13 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
   return {};
 }
 
+/// All that compiling decides.
+Result<void> Program::State::settle_and_compile(KernelCompiler& compiler, std::vector<KernelDesc>& descs) {
+  AFTERGLOW_CHECK(settle_rows(compiler, descs));
+  AFTERGLOW_CHECK(make_images(descs));
+  return compile(compiler, descs);
+}
+
 Result<void> Program::State::make_pipelines() {
   std::vector<std::string> names(compiled.unique.size());
   for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;

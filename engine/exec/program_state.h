@@ -112,6 +112,7 @@ struct Program::State {
   Result<void> take_images(const std::vector<KernelDesc>& descs);
   std::vector<ImageId> reads_of(const std::vector<ImageId>& bound) const;
   Result<void> compile(KernelCompiler& compiler, const std::vector<KernelDesc>& descs);
+  Result<void> settle_and_compile(KernelCompiler& compiler, std::vector<KernelDesc>& descs);
   Result<void> make_pipelines();
   Result<void> make_marks();
   Result<void> make_place();

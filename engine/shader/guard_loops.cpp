@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
+#include "shader/cpu/interleave.h"
 #include "shader/loop_weights.h"
 #include "shader/weight.h"
 #include "shader/workgroup.h"
@@ -39,6 +41,7 @@ class Guard {
       else
         count_turns(i);
     }
+    renew_turns();
     begin_and_end();
     rebuild();
     return true;
@@ -264,6 +267,40 @@ class Guard {
         constant(spv::MemorySemanticsAcquireReleaseMask | spv::MemorySemanticsWorkgroupMemoryMask, false);
     code.push_back(Instruction::of_words(spv::OpControlBarrier, {group, group, memory}));
     return add(code, spv::OpLoad, int_, {told_});
+  }
+
+  /// Where the engine calls what an author wrote, for each pass of the kernel and each of its rows. Not in loops, which
+  /// could renew their own turns.
+  std::vector<std::size_t> calls_of_authors() const {
+    std::set<std::uint32_t> engines;
+    for (const Instruction& i : module_.code) {
+      if (i.op == spv::OpEntryPoint) engines.insert(i.words[2]);
+      const bool named = i.op == spv::OpName;
+      if (named && std::string_view(reinterpret_cast<const char*>(&i.words[2])).starts_with(kRowFunction))
+        engines.insert(i.words[1]);
+    }
+    std::vector<std::size_t> calls;
+    std::uint32_t function = 0, label = 0;
+    for (std::size_t at = 0; at < module_.code.size(); ++at) {
+      const Instruction& i = module_.code[at];
+      if (i.op == spv::OpFunction) function = i.result;
+      if (i.op == spv::OpLabel) label = i.result;
+      if (i.op != spv::OpFunctionCall || !engines.contains(function) || engines.contains(i.words[3])) continue;
+      const bool turns = std::ranges::any_of(loops_, [&](const Loop& loop) { return loop.blocks.contains(label); });
+      if (weights_.guards(i.words[3]) && !turns) calls.push_back(at);
+    }
+    return calls;
+  }
+
+  /// Each of those calls has all turns for itself, unless a loop has run out before: which loops run out must not
+  /// depend on how passes are fused, and how many rows are drawn at a time.
+  void renew_turns() {
+    for (const auto at : calls_of_authors()) {
+      Code& code = before_[at];
+      const std::uint32_t where = add(code, spv::OpLoad, int_, {where_});
+      const std::uint32_t goes_on = add(code, spv::OpIEqual, bool_, {where, constant(0)});
+      store(code, turns_, add(code, spv::OpSelect, int_, {goes_on, constant(kMaxTurns), constant(0)}));
+    }
   }
 
   /// The turns of an invocation, and what it tells when they are used up.

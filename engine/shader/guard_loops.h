@@ -13,7 +13,8 @@
 
 namespace afterglow {
 
-/// Turns of an invocation. Below what lavapipe allows, so that it is not the driver that ends a loop.
+/// Turns of an invocation in one pass, of one of its rows. Below what lavapipe allows, so that it is not the driver
+/// that ends a loop.
 inline constexpr std::uint32_t kMaxTurns = 32768;
 /// Loops of constants are left alone up to so many turns, with those inside of them.
 inline constexpr std::uint64_t kFewTurns = 4096;

@@ -15,6 +15,10 @@ LoopWeights::LoopWeights(const Module& module, const std::vector<Loop>& loops) :
   weights_.assign(loops.size(), 1);
   for (const auto& [id, at] : functions_) (void)turns_of_function(id);
   find_waits();
+  std::set<std::size_t> heads;
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    if (guarded_[i]) heads.insert(loops[i].head);
+  guarding_ = functions_with([&](std::size_t at) { return heads.contains(at); });
 }
 
 bool LoopWeights::any() const { return std::ranges::find(guarded_, true) != guarded_.end(); }
@@ -60,20 +64,28 @@ std::uint64_t LoopWeights::turns_of(std::size_t loop) {
   return guarded_[loop] ? 0 : turns;
 }
 
-/// Functions that wait, and those that call them, until there are no more; then the loops around such places.
+/// Functions in which an instruction (by its place) is of a kind, and those that call them, until there are no more.
+std::set<std::uint32_t> LoopWeights::functions_with(const std::function<bool(std::size_t)>& has) const {
+  std::set<std::uint32_t> found;
+  std::size_t before = 0;
+  do {
+    before = found.size();
+    std::uint32_t function = 0;
+    for (std::size_t at = 0; at < code_.size(); ++at) {
+      const Instruction& i = code_[at];
+      if (i.op == spv::OpFunction) function = i.result;
+      if ((i.op == spv::OpFunctionCall && found.contains(i.words[3])) || has(at)) found.insert(function);
+    }
+  } while (found.size() > before);
+  return found;
+}
+
+/// Functions that wait, then the loops around such places.
 void LoopWeights::find_waits() {
+  waiting_ = functions_with([&](std::size_t at) { return code_[at].op == spv::OpControlBarrier; });
   const auto waits_at = [&](const Instruction& i) {
     return i.op == spv::OpControlBarrier || (i.op == spv::OpFunctionCall && waiting_.contains(i.words[3]));
   };
-  std::size_t before = 0;
-  do {
-    before = waiting_.size();
-    std::uint32_t function = 0;
-    for (const Instruction& i : code_) {
-      if (i.op == spv::OpFunction) function = i.result;
-      if (waits_at(i)) waiting_.insert(function);
-    }
-  } while (waiting_.size() > before);
   std::uint32_t label = 0;
   for (const Instruction& i : code_) {
     if (i.op == spv::OpLabel) label = i.result;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <vector>
@@ -22,19 +23,23 @@ class LoopWeights {
   std::uint32_t weight(std::size_t loop) const;
   /// Invocations of a workgroup wait for each other in it.
   bool waits(std::size_t loop) const { return waits_[loop]; }
+  /// A call of the function may come to a guarded loop.
+  bool guards(std::uint32_t function) const { return guarding_.contains(function); }
 
  private:
   std::uint64_t turns_of_function(std::uint32_t id);
   std::uint64_t turns_within(int around, std::size_t function);
   std::uint64_t turns_of(std::size_t loop);
   int innermost(std::uint32_t label, std::size_t function) const;
+  std::set<std::uint32_t> functions_with(const std::function<bool(std::size_t)>& has) const;
   void find_waits();
 
   const std::vector<Instruction>& code_;
   const std::vector<Loop>& loops_;
   std::map<std::uint32_t, std::size_t> functions_;
   std::map<std::uint32_t, std::uint64_t> turns_;  ///< of functions, without those of guarded loops
-  std::set<std::uint32_t> waiting_;               ///< functions with barriers
+  std::set<std::uint32_t> waiting_;               ///< functions with barriers, by themselves or in what they call
+  std::set<std::uint32_t> guarding_;              ///< likewise functions with guarded loops
   std::vector<bool> guarded_, waits_;
   std::vector<std::uint64_t> weights_;
 };

@@ -77,6 +77,39 @@ TEST_F(EndlessLoops, AreToldByFileAndLine) {
       5);
 }
 
+/// Which loops run out depends neither on what a pass is fused with nor on how many rows are drawn at a time.
+TEST_F(EndlessLoops, EachPassHasAllTurns) {
+  const Size size{64, 64};
+  shader("turns",
+         "uniform int count;\nvec4 apply(vec4 c) {\n  for (int i = 0; i < count; ++i) c.r = fract(c.r * 1.5 + c.g);\n"
+         "  return c;\n}\n");
+  const std::vector<float> source = noise(size, 7);
+  const auto made = [&](int second, const ExecutionConfig& config) -> Result<std::vector<float>> {
+    GraphBuilder builder(size);
+    const ImageId first =
+        builder.pixel("first", "turns", builder.source(), {}, {{"count", ParamValue{ParamType::int1, {20000}}}});
+    const Graph graph = builder.finish(builder.pixel(
+        "second", "turns", first, {}, {{"count", ParamValue{ParamType::int1, {static_cast<double>(second)}}}}));
+    AFTERGLOW_TRY(const auto program, try_program(graph, {.config = config, .result_by_rows = true}));
+    EXPECT_EQ(program->plan().kernels.size(), config.fusion == Fusion::all ? 1u : 2u);
+    AFTERGLOW_TRY(const auto runner, FrameRunner::create(device(), 6ull << 30));
+    HostResult out;
+    AFTERGLOW_CHECK(
+        runner->run(*program, {{"source", {.pixels = source.data(), .size = size}}}, out, KernelTiming::none));
+    return out.pixels;
+  };
+  const auto apart = made(30000, {.fusion = Fusion::none});
+  ASSERT_TRUE(apart) << apart.error().text();
+  for (const int rows : {1, 4}) {
+    const auto fused = made(30000, {.rows = rows});
+    ASSERT_TRUE(fused) << fused.error().text();
+    EXPECT_EQ(*fused, *apart) << rows << " rows";
+    const auto too_many = made(40000, {.rows = rows});
+    ASSERT_FALSE(too_many) << rows << " rows";
+    EXPECT_THAT(too_many.error().text(), HasSubstr("within 32768 turns"));
+  }
+}
+
 /// A warm-up draws pixels of images that nobody has filled: a loop that ends by what it reads may not end there, which
 /// is no fault of the frame behind it.
 TEST_F(EndlessLoops, AWarmUpTellsNothing) {

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "exec/kernel_timer.h"
+#include "exec/program_cache.h"
 #include "exec/submit.h"
 #include "gpu/image.h"
 #include "workshop.h"
@@ -63,6 +65,39 @@ class ProgramTest : public Workshop {
  private:
   std::vector<Size> sizes_;
 };
+
+/// Each keeps the limits of what a shader may hold, and both together do not.
+TEST_F(ProgramTest, PassesThatAreTooMuchTogetherRunApart) {
+  shader("holds",
+         "uniform float gain;\nvec4 apply(vec4 color) {\n  float a[250], b[250], c[250];\n"
+         "  for (int i = 0; i < 250; ++i) a[i] = b[i] = c[i] = color.r * gain;\n"
+         "  int at = int(color.g * 249.0);\n  return vec4(a[at], b[at], c[at], 1.0);\n}\n");
+  shader("holds_more",
+         "vec4 apply(vec4 color) {\n  float a[250], b[250], c[250], d[250], e[250];\n"
+         "  for (int i = 0; i < 250; ++i) a[i] = b[i] = c[i] = d[i] = e[i] = color.r;\n"
+         "  int at = int(color.g * 249.0);\n  return vec4(a[at], b[at], c[at], d[at] + e[at]);\n}\n");
+  const Size size{17, 5};
+  const std::vector<float> source = noise(size, 3);
+  const std::map<std::string, HostImage> inputs{{"source", {.pixels = source.data(), .size = size}}};
+  GraphBuilder b(size);
+  const ImageId once = b.pixel("once", "holds", b.source(), {}, {{"gain", number(0.5)}});
+  const Graph graph = b.finish(b.pixel("twice", "holds", once, {}, {{"gain", number(3)}}));
+  const auto made = try_program(graph);
+  ASSERT_TRUE(made) << made.error().text();
+  EXPECT_EQ((*made)->plan().kernels.size(), 2u);
+  EXPECT_EQ(run(graph, inputs).pixels, run(graph, inputs, {.config = {.fusion = Fusion::none}}).pixels);
+
+  std::set<Hash> checked;
+  EXPECT_TRUE(check_kernels(*library_, *compiler_, {.graph = graph}, {}, checked).errors.empty());
+  GraphBuilder heavy(size);
+  const ImageId light = heavy.pixel("light", "holds", heavy.source(), {}, {{"gain", number(0.5)}});
+  const Graph bad = heavy.finish(heavy.pixel("heavy", "holds_more", light));
+  const auto errors = check_kernels(*library_, *compiler_, {.graph = bad}, {}, checked).errors;
+  ASSERT_EQ(errors.size(), 1u);
+  for (const Error& error : {errors[0], try_program(bad).error()}) {
+    EXPECT_THAT(error.text(), HasSubstr("holds_more.glsl:2: error: the shader holds 5000 bytes in arrays"));
+  }
+}
 
 TEST_F(ProgramTest, DiamondsGiveTheRightPixels) {
   const Filter horizontal{.interpolation = Interpolation::linear, .x = {{-1, 0.5}, {1, 0.5}}};
