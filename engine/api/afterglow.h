@@ -386,7 +386,7 @@ AFTERGLOW_API void afterglow_stack_reset_history(afterglow_stack *stack);
 
 /* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap
  * when there are none. An edit that is broken is returned as an error, once; the last good preset stays, and what was
- * prepared of it. Where good edits come before a broken one, the next call returns the error. Nothing that was recorded
+ * prepared of it. What is set meanwhile is kept, and counts from the next good edit on. Where good edits come before a broken one, the next call returns the error. Nothing that was recorded
  * from the stack may be in flight. One thread at a time. Errors: script, device. */
 AFTERGLOW_API afterglow_error *afterglow_stack_update(afterglow_stack *stack, bool *changed);
 
@@ -449,9 +449,11 @@ typedef struct afterglow_vulkan_image {
 
 typedef struct afterglow_bindings {
   size_t struct_size;
-  /* Formats are free; samples are read as floats, scene-linear, alpha associated. Usage: SAMPLED. */
+  /* Formats are free, but for those of integers (UINT, SINT): samples are read as floats, scene-linear, alpha
+     associated. Usage: SAMPLED. */
   afterglow_vulkan_image source, depth, normal, motion;
-  afterglow_vulkan_image result; /* in afterglow_stack_result_format; usage: COLOR_ATTACHMENT */
+  afterglow_vulkan_image result; /* in afterglow_stack_result_format, none of those that are read; usage:
+                                    COLOR_ATTACHMENT */
 } afterglow_bindings;
 
 static inline afterglow_bindings afterglow_bindings_default(void) {

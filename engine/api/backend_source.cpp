@@ -110,9 +110,12 @@ class Followed : public Source {
     wanted.arguments = given.arguments;
     wanted.leave_out_unfit = true;
     wanted.must_fit = must_fit;
-    AFTERGLOW_CHECK(attempt(wanted));
+    const auto fits = attempt(wanted);
+    if (!fits && !is_of_the_files(fits.error())) return fits.error();
     live_->set_overrides(given.overrides, given.arguments);
-    return settle();
+    if (fits) return settle();
+    live_->settle();  // the files are broken, which `update` tells; what is set counts with the next good edit
+    return {};
   }
 
   Result<bool> update() override {
@@ -150,10 +153,19 @@ class Followed : public Source {
 
  private:
   /// A LiveStack leaves out all that does not fit: what must fit is tried here first.
-  Result<void> attempt(const PresetOptions& wanted) {
+  Result<void> attempt(const PresetOptions& wanted) const {
     ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
     AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
     return {};
+  }
+  /// Whether an error is one of the preset alone, as it lies there now, and of no value that was set.
+  bool is_of_the_files(const Error& error) const {
+    PresetOptions alone = options_.stack.preset;
+    alone.overrides = {};
+    alone.leave_out_unfit = true;
+    alone.must_fit = MustFit::nothing;
+    const auto opens = attempt(alone);
+    return !opens && opens.error().text() == error.text();
   }
   Result<void> settle() {
     live_->settle();
@@ -178,7 +190,7 @@ class Followed : public Source {
 
   BackendOptions options_;
   Diagnostics& diagnostics_;
-  Diagnostics silent_;  ///< messages of builds come with the status of the one that is shown
+  mutable Diagnostics silent_;  ///< messages of builds come with the status of the one that is shown
   std::unique_ptr<LiveStack> live_;
   std::optional<BuildContext> context_;
   std::optional<DisplayEncoding> encoding_;

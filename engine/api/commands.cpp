@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Recording into command buffers of the caller.
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+#include <vulkan/vulkan_format_traits.hpp>
+
 #include "api/handles.h"
 
 using namespace afterglow;
@@ -9,6 +16,20 @@ namespace {
 
 ImageBinding binding_of(const afterglow_vulkan_image& image) {
   return {image.image, image.view, image.format, {static_cast<int>(image.width), static_cast<int>(image.height)}};
+}
+
+/// Shaders read floats.
+bool is_of_integers(VkFormat format) {
+  const std::string_view numbers = vk::componentNumericFormat(static_cast<vk::Format>(format), 0);
+  return numbers == "UINT" || numbers == "SINT";
+}
+
+Result<void> check_image(const char* name, const afterglow_vulkan_image& image, const afterglow_vulkan_image& result) {
+  const auto fail = [&](const char* what) { return usage(fmt::format("afterglow_bindings: {} {}", name, what)); };
+  if (image.format == VK_FORMAT_UNDEFINED) return fail("has the format VK_FORMAT_UNDEFINED");
+  if (is_of_integers(image.format)) return fail("has a format of integers; allowed: what shaders read as floats");
+  if (image.view == result.view) return fail("is the image of the result, which cannot be read meanwhile");
+  return {};
 }
 
 Result<Backend*> recording_backend(const afterglow_stack* stack, const char* function) {
@@ -28,13 +49,12 @@ afterglow_error* afterglow_stack_bind(afterglow_stack* stack, const afterglow_bi
     AFTERGLOW_TRY(Backend * backend, recording_backend(stack, "afterglow_stack_bind"));
     AFTERGLOW_TRY(const auto given, take(bindings, afterglow_bindings_default(), "afterglow_bindings"));
     std::map<std::string, ImageBinding> inputs;
-    const auto add = [&](const char* name, const afterglow_vulkan_image& image) {
-      if (image.image != VK_NULL_HANDLE) inputs[name] = binding_of(image);
-    };
-    add("source", given.source);
-    add("depth", given.depth);
-    add("normal", given.normal);
-    add("motion", given.motion);
+    for (const auto& [name, image] : std::initializer_list<std::pair<const char*, const afterglow_vulkan_image&>>{
+             {"source", given.source}, {"depth", given.depth}, {"normal", given.normal}, {"motion", given.motion}}) {
+      if (image.image == VK_NULL_HANDLE) continue;
+      AFTERGLOW_CHECK(check_image(name, image, given.result));
+      inputs[name] = binding_of(image);
+    }
     return backend->bind(inputs, binding_of(given.result));
   });
 }

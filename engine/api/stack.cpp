@@ -27,8 +27,8 @@ Result<void> check_frame(const afterglow_frame& frame) {
     return error;
   };
   AFTERGLOW_CHECK(check("number", frame.number, false));
-  AFTERGLOW_CHECK(check("time", frame.time, false));
   AFTERGLOW_CHECK(check("fps", frame.fps, true));
+  AFTERGLOW_CHECK(check("time", frame.time, false));
   AFTERGLOW_CHECK(check("step", frame.step, true));
   if (frame.has_position)
     for (const double coordinate : frame.position) AFTERGLOW_CHECK(check("position", coordinate, false));

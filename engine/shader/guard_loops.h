@@ -3,9 +3,9 @@
 //
 // Nothing ends a shader that runs on the CPU: its device is our own process. (Mesa's lavapipe leaves a loop after 65535
 // turns of a group of pixels, silently and with wrong pixels; with a long body, or for each of a million pixels, that
-// takes hours.) So each invocation has a number of turns for all of its loops. The first one that has used them up
+// takes hours.) So each invocation has a number of turns for all loops of a pass. The first one that has used them up
 // leaves its loops and writes which loop it was into a buffer; invocations that begin later find that and turn no loop
-// at all, so that the frame is over at once.
+// at all, so that the frame is over at once. Passes of one kernel and rows of one invocation have their turns each.
 #pragma once
 
 #include <cstdint>

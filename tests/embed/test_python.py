@@ -3,6 +3,7 @@
 import logging
 import pathlib
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -200,15 +201,31 @@ def test_wrong_arguments(stack):
         (lambda: afterglow.Stack("neon_night", follow="no"), "follow must be a bool, not str"),
         (lambda: afterglow.Stack("neon_night", text=3), "text must be a str, not int"),
         (lambda: stack.run(picture(), frame=[1]), "frame must be a number, not list"),
-        (lambda: stack.run(picture(), position=1), r"position must be \(x, y, z\), not int"),
+        (lambda: stack.run(picture(), position=1), r"position must be three numbers \(x, y, z\), not int"),
         (lambda: stack.run(picture(), region=(1, 2)), "region must be .*, not tuple"),
         (lambda: stack.set("gain.amount", {}), "gain.amount must be a bool, a number, a str or some numbers, not dict"),
         (lambda: stack.set("gain.amount", None), "not NoneType"),
     ):
         with pytest.raises(TypeError, match=told):
             call()
+    with pytest.raises(afterglow.UsageError, match="fps is 0"):
+        stack.run(picture(), fps=0)
     with pytest.raises(ValueError, match="allowed: auto, fp32, fp16"):
         afterglow.Stack("neon_night", precision="double")
+
+
+def test_numbers_that_may_be_codes_are_no_light(stack, device):
+    for dtype in (np.uint16, np.int8, np.int64, bool, complex, "S4", "datetime64[s]"):
+        with pytest.raises(afterglow.UsageError, match="source is an array of .*allowed: floats"):
+            stack.run(np.ones((2, 2, 3), np.uint8).astype(dtype))
+    # What is no colour may be whole.
+    outline = afterglow.Stack("ink_outline", device=device)
+    depth = np.full((16, 16), 5, np.uint16)
+    depth[4:12, 4:12] = 1
+    source = np.full((16, 16, 3), 0.5, np.float32)
+    np.testing.assert_array_equal(outline.run(source, depth=depth), outline.run(source, depth=depth.astype(np.float32)))
+    with pytest.raises(afterglow.UsageError, match="depth is an array of complex64; allowed: numbers"):
+        outline.run(source, depth=depth.astype(np.complex64))
 
 
 def test_pictures_that_do_not_fit_are_usage_errors(stack):
@@ -279,6 +296,33 @@ def test_follow(folder, device):
         woken.clear()
         changed = stack.update()
     np.testing.assert_array_equal(stack.run(one), 7 * one)
+
+
+def test_set_while_an_edit_is_broken(folder, device):
+    file = folder / "look.lua"
+    stack = afterglow.Stack(file, device=device, follow=True)
+    one = np.ones((1, 1, 3), np.float32)
+    for broken in ("return fx.(", None):
+        stack.set("gain.amount", 3)
+        np.testing.assert_array_equal(stack.run(one), 3 * one)
+        file.write_text(broken) if broken else file.unlink()
+        stack.set("gain.amount", 5)
+        stack.set("gain.amount", 6)
+        np.testing.assert_array_equal(stack.run(one), 3 * one)
+        told = None
+        while told is None:
+            try:
+                stack.update()
+            except (afterglow.ScriptError, afterglow.FileError) as error:
+                told = error
+            time.sleep(0.01)
+        stack.update()  # told once
+        file.write_text(look("fx.gain { amount = 7 }"))
+        while (stack.run(one) != 6).any():
+            stack.update()
+            time.sleep(0.01)
+        with pytest.raises(afterglow.UsageError, match="gain.amount"):
+            stack.set("gain.amount", "much")
 
 
 def test_depth(device):

@@ -11,6 +11,9 @@ bool is_half(const py::dtype& type) { return type.kind() == 'f' && type.itemsize
 bool is_float(const py::dtype& type) { return type.kind() == 'f' && type.itemsize() == 4; }
 bool is_codes(const py::dtype& type) { return type.kind() == 'u' && type.itemsize() == 1; }
 bool is_native(const py::dtype& type) { return type.byteorder() == '=' || type.byteorder() == '|'; }
+/// Numbers that may be light. Whole ones may be codes of any kind, but for bytes, which say it.
+bool may_be_light(const py::dtype& type) { return type.kind() == 'f' || is_codes(type); }
+bool is_number(const py::dtype& type) { return may_be_light(type) || type.kind() == 'u' || type.kind() == 'i'; }
 bool is_known(const py::dtype& type) { return is_native(type) && (is_half(type) || is_float(type) || is_codes(type)); }
 
 std::string shape_text(const py::array& array) { return py::str(array.attr("shape")).cast<std::string>(); }
@@ -50,6 +53,10 @@ afterglow_image image_of(py::array& array, const char* name) {
 Picture input(const py::object& given, const char* name, bool may_be_flat) {
   py::array array = py::module_::import("numpy").attr("asarray")(given);
   if (array.dtype().kind() == 'O') refuse(std::string(name) + " is no array of numbers");
+  if (may_be_flat ? !is_number(array.dtype()) : !may_be_light(array.dtype()))
+    refuse(std::string(name) + " is an array of " + py::str(array.dtype()).cast<std::string>() +
+           (may_be_flat ? "; allowed: numbers"
+                        : "; allowed: floats, which are scene-linear light, and uint8, which are sRGB codes"));
   if (!is_known(array.dtype())) array = array.attr("astype")("float32");
   if (array.ndim() == 2 && !may_be_flat)
     refuse(std::string(name) + ": the shape is " + shape_text(array) +

@@ -18,8 +18,9 @@ struct Picture {
   afterglow_image image{};
 };
 
-/// (height, width, channels) or, with one channel, (height, width); float32, float16 or uint8. Other numbers become
-/// float32, and layouts that the library cannot read are copied. Throws py::value_error.
+/// (height, width, channels) or, with one channel, (height, width); float32, float16 or uint8. Other floats
+/// become float32, and so do whole numbers of images that `may_be_flat`, which are no colours; layouts that the library
+/// cannot read are copied. Throws py::value_error.
 Picture input(const py::object& given, const char* name, bool may_be_flat);
 
 /// `given` to be written in place: float32, float16 or uint8, writeable, each pixel in a place of its

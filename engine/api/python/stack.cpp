@@ -24,7 +24,8 @@ afterglow_precision precision_of(const std::string& name) {
 
 afterglow_rect region_of(const py::object& region) {
   if (region.is_none()) return {0, 0, 0, 0};
-  const auto [x, y, width, height] = cast<std::tuple<int, int, int, int>>(region, "region", "(x, y, width, height)");
+  const auto [x, y, width, height] =
+      cast<std::tuple<int, int, int, int>>(region, "region", "four whole numbers (x, y, width, height)");
   if (width < 1 || height < 1) refuse("region is (x, y, width, height); sides start at 1");
   return {x, y, width, height};
 }
@@ -151,7 +152,7 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   frame.step = options.take("step", frame.step);
   frame.restart = options.take("restart", false);
   if (const py::object position = options.take("position"); !position.is_none()) {
-    const auto [x, y, z] = cast<std::tuple<double, double, double>>(position, "position", "(x, y, z)");
+    const auto [x, y, z] = cast<std::tuple<double, double, double>>(position, "position", "three numbers (x, y, z)");
     frame.has_position = true;
     frame.position[0] = x, frame.position[1] = y, frame.position[2] = z;
   }

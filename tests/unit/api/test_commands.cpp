@@ -92,6 +92,28 @@ TEST_F(CommandsTest, WhatIsPreparedOutlastsFailures) {
   EXPECT_FALSE(afterglow_stack_runs(stack.get())) << "another stack wants to be prepared";
 }
 
+TEST_F(CommandsTest, ImagesThatCannotBeReadAreRefused) {
+  const StackPtr stack = this->stack(recording());
+  const afterglow_shape wanted = shape();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  const auto image = [&](std::uintptr_t handle, VkFormat format) {  // never looked at
+    return afterglow_vulkan_image{reinterpret_cast<VkImage>(handle), reinterpret_cast<VkImageView>(handle), format,
+                                  static_cast<std::uint32_t>(wanted.width), static_cast<std::uint32_t>(wanted.height)};
+  };
+  const auto refused = [&](VkFormat format, std::uintptr_t handle, const char* told) {
+    afterglow_bindings bindings = afterglow_bindings_default();
+    bindings.source = image(handle, format);
+    bindings.result = image(2, afterglow_stack_result_format(stack.get()));
+    const ErrorPtr error(afterglow_stack_bind(stack.get(), &bindings));
+    EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
+    EXPECT_THAT(text_of(error.get()), HasSubstr(told)) << format;
+  };
+  refused(VK_FORMAT_UNDEFINED, 1, "source has the format VK_FORMAT_UNDEFINED");
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UINT, VK_FORMAT_R32G32B32A32_SINT, VK_FORMAT_R16_UINT})
+    refused(format, 1, "source has a format of integers");
+  refused(VK_FORMAT_R32G32B32A32_SFLOAT, 2, "source is the image of the result");
+}
+
 TEST_F(CommandsTest, AStackIsForOneUse) {
   const StackPtr memory = this->stack();
   const afterglow_bindings bindings = afterglow_bindings_default();

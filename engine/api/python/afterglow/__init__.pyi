@@ -89,7 +89,8 @@ class Stack:
         dither: bool = False,
     ) -> NDArray[Any]:
         """Runs the stack on a picture of (height, width, 3 or 4). float32 and float16 are scene-linear with associated
-        alpha, uint8 are sRGB codes with straight alpha. Other numbers become float32. The result is a new array like
+        alpha, uint8 are sRGB codes with straight alpha. Other floats become float32, other numbers are refused as colours:
+        they may be codes of any kind. The result is a new array like
         the source, of `dtype` where that is given, or `out`, which may be the source itself. With `region` the rest of
         a new array is undefined. `time` in seconds is frame / fps where it is not given, as `afterglow run` counts."""
 
