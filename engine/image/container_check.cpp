@@ -130,9 +130,11 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   if (format == "tiff") AFTERGLOW_CHECK(check_tiff(file, in, size));
   if (format == "targa") {
     AFTERGLOW_TRY(claimed, check_targa(file, in, size));
+    facts.fourth_is_padding = pads_targa(in, size);
   }
   if (format == "bmp") {
     AFTERGLOW_TRY(claimed, check_bmp(file, in));
+    facts.fourth_is_padding = pads_bmp(in, size);
   }
   if (format == "jpeg2000") {
     AFTERGLOW_TRY(claimed, check_jpeg2000(file, in, size));

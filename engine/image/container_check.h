@@ -19,6 +19,7 @@ struct ContainerFacts {
   std::optional<Size> size;                 ///< where it can be told before a library opens the file
   std::uint64_t least_file_bytes = 0;       ///< fewer cannot hold the pixels, however well they compress
   std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
+  bool fourth_is_padding = false;           ///< BMP, Targa: the fourth byte of a pixel means nothing
   bool srgb = false;                        ///< PNG sRGB chunk
   bool icc = false;                         ///< PNG iCCP chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455

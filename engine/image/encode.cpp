@@ -59,9 +59,15 @@ std::uint32_t linear_code(float value, int max_code) {
   return static_cast<std::uint32_t>(std::min(static_cast<double>(value), 1.0) * max_code + 0.5);
 }
 
-/// A stored value by its code: the nearest, or one of the two beside it as the noise says.
+/// A stored value by its code: the nearest, or, with a threshold, one of the two beside it. What lies within a
+/// thousandth of a code is that code everywhere, as in `dithered`.
+std::uint32_t stored_code(float stored, int max_code) {
+  return static_cast<std::uint32_t>(std::min(stored * static_cast<float>(max_code) + 0.5f, float(max_code)));
+}
 std::uint32_t stored_code(float stored, float threshold, int max_code) {
-  return static_cast<std::uint32_t>(std::min(stored * static_cast<float>(max_code) + threshold, float(max_code)));
+  const float encoded = std::min(stored, 1.0f) * static_cast<float>(max_code), code = std::floor(encoded);
+  return static_cast<std::uint32_t>(
+      std::min(code + ((encoded - code) * 1.002f - 0.001f > threshold ? 1 : 0), float(max_code)));
 }
 
 template <class Code>
@@ -72,8 +78,8 @@ void encode_in_space(const CodeRules& rules, const float* rgba, int width, int x
   for (int x = 0; x < width; ++x) {
     const float* pixel = &row[static_cast<std::size_t>(x) * 4];
     for (int c = 0; c < 3; ++c)
-      *codes++ =
-          static_cast<Code>(stored_code(pixel[c], rules.dither ? 1 - blue_noise(x0 + x, y) : 0.5f, rules.max_code));
+      *codes++ = static_cast<Code>(rules.dither ? stored_code(pixel[c], blue_noise(x0 + x, y), rules.max_code)
+                                                : stored_code(pixel[c], rules.max_code));
     if (rules.alpha) *codes++ = static_cast<Code>(linear_code(pixel[3], rules.max_code));
   }
 }

@@ -19,6 +19,11 @@ constexpr std::array<std::string_view, 9> kNumbers{"ExposureTime",         "FNum
                                                    "Exif:SubjectDistance", "GPS:Altitude",
                                                    "FramesPerSecond"};
 
+/// Those of them that are whole numbers in Exif; the others are fractions, also where they have nothing behind the
+/// point (f/8).
+constexpr std::array<std::string_view, 3> kWholeNumbers{"Exif:ISOSpeedRatings", "Exif:PhotographicSensitivity",
+                                                        "Exif:FocalLengthIn35mmFilm"};
+
 std::optional<Rational> fraction(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos) return std::nullopt;
@@ -34,7 +39,7 @@ std::optional<Rational> rate_of(const MetadataValue& value) {
   const MetadataValue* from = &value;
   std::optional<MetadataValue> read;
   if (const auto* text = std::get_if<std::string>(&value)) {
-    read = number_of_text(*text);
+    read = number_of_text("", *text);
     if (!read) return std::nullopt;
     from = &*read;
   }
@@ -52,9 +57,10 @@ std::optional<Rational> rate_of(const MetadataValue& value) {
 
 bool is_kept_as_text(std::string_view name) { return std::ranges::find(kNumbers, name) != kNumbers.end(); }
 
-std::optional<MetadataValue> number_of_text(std::string_view text) {
+std::optional<MetadataValue> number_of_text(std::string_view name, std::string_view text) {
   if (const auto rational = fraction(text)) return *rational;
-  if (const auto integer = parse_number<int>(text)) return *integer;
+  const auto integer = parse_number<int>(text);
+  if (integer && std::ranges::find(kWholeNumbers, name) != kWholeNumbers.end()) return *integer;
   const auto number = parse_number<float>(text);
   return number && std::isfinite(*number) ? std::optional<MetadataValue>(*number) : std::nullopt;
 }

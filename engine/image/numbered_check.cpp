@@ -44,13 +44,21 @@ bool targa_colors_exist(std::span<const unsigned char> bytes, bool packed) {
   return true;
 }
 
+/// Where a Targa's extension begins; 0: it has none.
+std::uint64_t targa_extension(std::span<const unsigned char> bytes) {
+  constexpr std::size_t kFooter = 26, kExtension = 495;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (bytes.size() < kFooter || !text.substr(bytes.size() - 18).starts_with("TRUEVISION-XFILE.")) return 0;
+  const std::uint64_t at = little_endian(&bytes[bytes.size() - kFooter], 4);
+  return at + 2 <= bytes.size() && little_endian(&bytes[at], 2) >= kExtension ? at : 0;
+}
+
 /// Author, job and program of the extension end inside of their places.
 bool targa_texts_end(std::span<const unsigned char> bytes) {
-  constexpr std::size_t kFooter = 26, kText = 41, kExtension = 495;
+  constexpr std::size_t kText = 41;
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (bytes.size() < kFooter || !text.substr(bytes.size() - 18).starts_with("TRUEVISION-XFILE.")) return true;
-  const std::uint64_t at = little_endian(&bytes[bytes.size() - kFooter], 4);
-  if (at + 2 > bytes.size() || little_endian(&bytes[at], 2) < kExtension) return true;
+  const std::uint64_t at = targa_extension(bytes);
+  if (at == 0) return true;
   for (const std::uint64_t place : {at + 2, at + 379, at + 426})
     if (place + kText <= bytes.size() && text.substr(place, kText).find('\0') == text.npos) return false;
   return true;
@@ -129,6 +137,28 @@ Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, 
   if (packing != kRuns8 && packing != kRuns4) return std::optional<ClaimedSize>();
   if (bits != 8 && bits != 4) return malformed(file, "is damaged: only pictures of 4 or 8 bits are packed so");
   return std::optional(ClaimedSize{{side(18), side(22)}, 1});
+}
+
+bool pads_targa(std::ifstream& in, std::uint64_t size) {
+  constexpr unsigned kStraight = 3, kAssociated = 4;
+  constexpr std::uint64_t kAttributes = 494;  // in the extension
+  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
+  if (bytes.size() < 18 || bytes[16] != 32 || (bytes[17] & 15) != 0) return false;
+  const std::uint64_t at = targa_extension(bytes);
+  const unsigned attributes = at != 0 && at + kAttributes < bytes.size() ? bytes[at + kAttributes] : 0;
+  return attributes != kStraight && attributes != kAssociated;
+}
+
+bool pads_bmp(std::ifstream& in, std::uint64_t size) {
+  constexpr std::uint32_t kWithAlpha = 56, kPlain = 0, kMasks = 3;  // a header so long has a mask for alpha
+  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
+  if (bytes.size() < 34 || little_endian(&bytes[28], 2) != 32) return false;
+  const std::uint32_t header = little_endian(&bytes[14], 4), packing = little_endian(&bytes[30], 4);
+  if (packing != kPlain && packing != kMasks) return false;
+  if (header >= kWithAlpha && bytes.size() >= 70 && little_endian(&bytes[66], 4) != 0) return false;
+  for (std::uint64_t at = little_endian(&bytes[10], 4) + std::uint64_t{3}; at < bytes.size(); at += 4)
+    if (bytes[at] != 0) return false;
+  return true;
 }
 
 Result<void> check_gif(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {

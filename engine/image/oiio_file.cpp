@@ -153,6 +153,7 @@ class OiioFile : public PictureFile {
       }
       part.orientation = std::clamp(spec.get_int_attribute("Orientation", 1), 1, 8);
       part.channels = spec.channelnames;
+      if (container_.fourth_is_padding && part.channels.size() == 4) part.channels.pop_back();
       if (i > 0) part.name = spec.get_string_attribute("oiio:subimagename", fmt::format("page{}", i + 1));
       if (spec.depth > 1) part.unreadable = "is a volume, not a picture";
       if (spec.deep) part.unreadable = "is a deep picture, which is not supported";
@@ -243,7 +244,7 @@ class OiioFile : public PictureFile {
     } else if (space == "kodaklog") {
       use_input_space(*find_input_space("cineon").value(), encoding);
     } else if (space == "rec709") {
-      encoding.curve = TransferCurve::rec709;
+      use_input_space(*find_input_space("rec709").value(), encoding);
     } else if (space.starts_with("gamma")) {
       const double exponent = std::atof(space.c_str() + 5);
       if (!(exponent > 0.1 && exponent < 10)) return;

@@ -40,7 +40,9 @@ struct Replacement {
   std::vector<std::string> replaced;  ///< names in the old file that they stand for
 };
 
-Replacement replacement_for(const FileFacts& facts, const Picture& picture) {
+/// Errors: io (one channel of a layer was chosen that has colours of its own, which the result would take the place
+/// of).
+Result<Replacement> replacement_for(const FileFacts& facts, const Picture& picture) {
   Replacement result;
   result.names = facts.color_channels;
   for (const std::string& name : facts.color_channels)
@@ -51,9 +53,15 @@ Replacement replacement_for(const FileFacts& facts, const Picture& picture) {
     // Grey, or luminance and chroma: the result has colour.
     for (const char* chroma : {"RY", "BY"}) result.replaced.push_back(prefix + chroma);
     result.names = {prefix + "R", prefix + "G", prefix + "B", facts.color_channels[3]};
+    for (const std::string& name : {result.names[0], result.names[1], result.names[2]})
+      if (name != first && facts.exr_header->channels().findChannel(name))
+        return Error{ErrorKind::io,
+                     fmt::format("cannot keep layers: what is made of '{}' would take the place of '{}'", first, name)};
     for (const std::string& name : result.names)
       if (!name.empty()) result.replaced.push_back(name);
   }
+  for (std::size_t c = 0; c < 3; ++c)  // a layer that lacks a colour gets it
+    if (result.names[c].empty()) result.names[c] = prefix + "RGB"[c];
   if (!picture.has_alpha) result.names[3].clear();
   return result;
 }
@@ -168,7 +176,7 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
   Imf::MultiPartInputFile input(facts->file.c_str());
   AFTERGLOW_CHECK(check_unchanged(input, *facts));
   AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));
-  const Replacement replacement = replacement_for(*facts, picture);
+  AFTERGLOW_TRY(const Replacement replacement, replacement_for(*facts, picture));
   ExrColorRows color(picture, replacement.names, sample_type(*format, options, facts));
   const Imath::Box2i window = exr_window(picture.data_window);
   ExrKeptChannels others(input.header(facts->part), replacement.replaced, window);

@@ -140,6 +140,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   out.files.normal = footage.read.normal;
   out.files.motion = footage.read.motion;
   out.loop.max_memory = out.session.stack.max_memory;
+  out.input_space = footage.read.input_space;
   out.loop.read.layer = footage.read.layer;
   out.loop.read.max_bytes = footage.read.max_bytes;
   out.loop.fps = player.transport().fps();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ranges that a user exports from the window: what is written, with which look, and what is left of one that is
 // cancelled.
+#include "image/input_space.h"
 #include "play_window_test.h"
 
 namespace afterglow {
@@ -112,6 +113,17 @@ TEST_F(PlayExport, ChangesOfThePanelArePartOfIt) {
   ASSERT_TRUE(user("key q"));
   ASSERT_TRUE(program_->wait_for("asked whether to save"));
   ASSERT_TRUE(user("key d"));
+  expect_clean_end();
+}
+
+TEST_F(PlayExport, PicturesAreReadAsTheyAreShown) {
+  write_preset("{ 1, 1, 1 }");
+  play({"look.lua", "shot.####.exr", "--paused", "--input-space", "logc3"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  EXPECT_TRUE(program_->wait_for("export: 3 frames written"));
+  EXPECT_NEAR(pixel("out.0002.exr")[1], find_input_space("logc3").value()->to_linear(0.5), 1e-3);
+  ASSERT_TRUE(user("key q"));
   expect_clean_end();
 }
 

@@ -7,6 +7,7 @@
 
 #include "image/encode.h"
 #include "image/output_format.h"
+#include "image/output_space.h"
 #include "image/srgb.h"
 #include "temporary_folder.h"
 #include "written_files.h"
@@ -49,6 +50,17 @@ TEST(Dither, CodesStayWhatTheyAre) {
   }
   for (const float light : {-1.0f, 2.0f, 1e30f})
     for (const auto found : codes_of(light, {.dither = true})) ASSERT_EQ(found, light < 0 ? 0 : 255);
+}
+
+TEST(Dither, CodesOfOtherSpacesStayToo) {
+  for (const char* name : {"rec709", "gamma22", "gamma24"}) {
+    const InputSpace& space = *find_input_space(name).value();
+    for (int code = 0; code < 256; ++code) {
+      const auto light = static_cast<float>(space.to_linear(code / 255.0));
+      for (const auto found : codes_of(light, {.dither = true, .space = &OutputSpace::of(space)}))
+        ASSERT_EQ(found, code) << name;
+    }
+  }
 }
 
 TEST(Dither, NoiseIsBlueAndEven) {

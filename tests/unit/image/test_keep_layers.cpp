@@ -70,6 +70,36 @@ TEST_F(KeepLayers, BlenderFileWithMixedTypes) {
   }
 }
 
+TEST_F(KeepLayers, ColoursBesideAChosenChannelAreNotOverwritten) {
+  const auto in = folder_ / "in.exr", out = folder_ / "o.exr";
+  OIIO::ImageSpec spec(4, 2, 4, OIIO::TypeFloat);
+  const auto with = [&](std::vector<std::string> names) {
+    spec.nchannels = static_cast<int>(names.size());
+    spec.channelnames = std::move(names);
+    spec.alpha_channel = spec.z_channel = -1;
+    std::vector<float> samples;
+    for (int i = 0; i < 8 * spec.nchannels; ++i) samples.push_back(0.25f + static_cast<float>(i % spec.nchannels));
+    const auto file = OIIO::ImageOutput::create(in.string());
+    ASSERT_TRUE(file && file->open(in.string(), spec) && file->write_image(OIIO::TypeFloat, samples.data()));
+  };
+  ASSERT_NO_FATAL_FAILURE(with({"B", "G", "R", "Z"}));
+  ReadOptions reading;
+  reading.layer = "Z";
+  const auto written = write_picture(read_or_fail(in, reading), out, options_, messages_.diagnostics);
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().text(), HasSubstr("what is made of 'Z' would take the place of 'R'"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+
+  // A layer that lacks a colour gets it.
+  ASSERT_NO_FATAL_FAILURE(with({"G", "R", "id"}));
+  ASSERT_NO_FATAL_FAILURE(process(in, out));
+  const auto after = parts_of(out);
+  ASSERT_EQ(after.size(), 1u);
+  EXPECT_EQ(after[0].spec.channelnames, (std::vector<std::string>{"R", "G", "B", "id"}));
+  EXPECT_EQ((std::vector<float>{after[0].samples.begin(), after[0].samples.begin() + 4}),
+            (std::vector<float>{0.625f, 0.125f, 0, 2.25f}));
+}
+
 /// OpenImageIO writes parts that are all tiled or all scan lines.
 class KeepParts : public KeepLayers, public testing::WithParamInterface<bool> {};
 

@@ -33,10 +33,11 @@ TEST(KeptValues, RatesAreThoseOfTelevisionWhereTheyAreNear) {
 
 TEST(KeptValues, NumbersAreTextThatIsReadBack) {
   EXPECT_EQ(text_of_number(Rational{1, 50}), "1/50");
-  EXPECT_EQ(std::get<Rational>(*number_of_text("1/50")).denominator, 50);
-  EXPECT_EQ(std::get<int>(*number_of_text(text_of_number(800))), 800);
-  EXPECT_EQ(std::get<float>(*number_of_text(text_of_number(2.8f))), 2.8f);
-  for (const char* wrong : {"", "f/2.8", "1/0", "inf", "2,8"}) EXPECT_FALSE(number_of_text(wrong)) << wrong;
+  EXPECT_EQ(std::get<Rational>(*number_of_text("ExposureTime", "1/50")).denominator, 50);
+  EXPECT_EQ(std::get<int>(*number_of_text("Exif:ISOSpeedRatings", text_of_number(800))), 800);
+  EXPECT_EQ(std::get<float>(*number_of_text("FNumber", text_of_number(2.8f))), 2.8f);
+  EXPECT_EQ(std::get<float>(*number_of_text("FNumber", text_of_number(8.0f))), 8) << "a fraction for Exif";
+  for (const char* wrong : {"", "f/2.8", "1/0", "inf", "2,8"}) EXPECT_FALSE(number_of_text("FNumber", wrong)) << wrong;
 }
 
 class KeptBetween : public testing::Test {

@@ -53,6 +53,12 @@ TEST(Layers, Blender) {
   EXPECT_THAT(normal(kBlender), ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
 }
 
+TEST(Layers, AColourThatIsNotThereIsBlack) {
+  EXPECT_THAT(color({part({"G", "R"})}), ElementsAre("R", "G", "-", "-"));
+  EXPECT_THAT(color({part({"A", "B", "R"})}), ElementsAre("R", "-", "B", "A"));
+  EXPECT_THAT(color({part({"R"})}), ElementsAre("R", "R", "R", "-")) << "grey";
+}
+
 TEST(Layers, PlainNames) {
   EXPECT_THAT(color(kFlat), ElementsAre("R", "G", "B", "A"));
   EXPECT_THAT(depth(kFlat), ElementsAre("Z"));

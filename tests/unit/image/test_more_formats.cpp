@@ -53,6 +53,39 @@ Result<void> write(const Picture& picture, const std::filesystem::path& file, co
   return write_picture(picture, file, options, silent);
 }
 
+/// Of 2×1 pixels of four bytes, behind a header of `bytes`.
+void write_bytes(const std::filesystem::path& file, std::string bytes, const std::string& pixels) {
+  ASSERT_TRUE(write_file_atomically(file, bytes + pixels));
+}
+
+/// A byte that a header says nothing of, or that no mask is for, is no alpha.
+TEST(FourthByte, IsAlphaWhereTheFileSaysSo) {
+  const TemporaryFolder folder;
+  const std::string colors("\x10\x20\x30\0\x40\x50\x60\0", 8), with_alpha("\x10\x20\x30\0\x40\x50\x60\xff", 8);
+  const auto has_alpha = [&](const char* name, const std::string& header, const std::string& pixels) {
+    write_bytes(folder / name, header, pixels);
+    const Picture picture = read_or_fail(folder / name);
+    EXPECT_EQ(picture.color.width, 2);
+    if (!picture.has_alpha) {
+      EXPECT_NEAR(picture.color.pixels[0], 0.0296, 1e-3) << name << ": 0x30 of sRGB";
+      EXPECT_EQ(picture.color.pixels[3], 1) << name;
+    }
+    return picture.has_alpha;
+  };
+  const auto targa = [](char attributes) {
+    return std::string("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x20", 17) + static_cast<char>(0x20 | attributes);
+  };
+  EXPECT_FALSE(has_alpha("none.tga", targa(0), colors));
+  EXPECT_FALSE(has_alpha("none2.tga", targa(0), with_alpha));
+  EXPECT_TRUE(has_alpha("alpha.tga", targa(8), with_alpha));
+  const std::string bmp(
+      "BM\x3e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\1\0\0\0\1\0\x20\0\0\0\0\0\x08\0\0\0"
+      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0",
+      54);
+  EXPECT_FALSE(has_alpha("none.bmp", bmp, colors));
+  EXPECT_TRUE(has_alpha("alpha.bmp", bmp, with_alpha)) << "some programs write it so";
+}
+
 TEST(Cineon, HoldsTheCodesWhereTheFormatSays) {
   const TemporaryFolder folder;
   const Picture picture = wedge(37, 5, false);
