@@ -107,7 +107,7 @@ Result<void> Swapchain::make_surface() {
 }
 
 /// False when the window has no area.
-Result<bool> Swapchain::make_chain(Size window) {
+Result<bool> Swapchain::make_chain(Size window, bool surface_may_be_lost) {
   VkSurfaceCapabilitiesKHR surface{};
   VkResult asked = device_.vk().vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_.get(), &surface);
   if (asked == VK_ERROR_SURFACE_LOST_KHR) {
@@ -144,13 +144,17 @@ Result<bool> Swapchain::make_chain(Size window) {
       .clipped = VK_FALSE,  // images keep what was drawn into them, under other windows too
       .oldSwapchain = chain_ ? chain_->swapchain.get() : VK_NULL_HANDLE};
   VkSwapchainKHR swapchain = VK_NULL_HANDLE;
-  AFTERGLOW_VK(device_.vk().vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain),
-               "cannot create a swapchain");
+  const VkResult created = device_.vk().vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain);
+  retire_chain();  // by the call, whatever came of it
+  if (created == VK_ERROR_SURFACE_LOST_KHR && surface_may_be_lost) {
+    AFTERGLOW_CHECK(lose_surface());
+    return make_chain(window, false);
+  }
+  AFTERGLOW_VK(created, "cannot create a swapchain");
   auto chain = std::make_shared<Chain>();
   chain->swapchain = SwapchainHandle(device_, swapchain);
   chain->size = size;
   AFTERGLOW_CHECK(fill_chain(*chain));
-  retire_chain();
   chain_ = std::move(chain);
   ++chain_number_;
   ++counters_.made;

@@ -108,7 +108,7 @@ class Swapchain {
   explicit Swapchain(Device& device) : device_(device) {}
   Result<void> make_slots();
   Result<void> make_surface();
-  Result<bool> make_chain(Size window);
+  Result<bool> make_chain(Size window, bool surface_may_be_lost = true);
   Result<void> fill_chain(Chain& chain);
   Result<void> wait(Slot& slot);
   Result<std::optional<std::uint32_t>> acquire(Slot& slot);

@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <span>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -94,6 +98,20 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
   }
 }
 
+/// The product of all EXPOSURE lines of a Radiance header. Errors: io (it holds XYZ, which OpenImageIO does not know).
+Result<double> radiance_exposure(const fs::path& file, std::span<const unsigned char> head) {
+  double product = 1;
+  std::istringstream lines(std::string(head.begin(), head.end()));
+  for (std::string line; std::getline(lines, line) && !line.empty();) {
+    if (line.starts_with("FORMAT=32-bit_rle_xyze"))
+      return malformed(file, "holds CIE XYZ (32-bit_rle_xyze), which is not read; write it as 32-bit_rle_rgbe");
+    if (!line.starts_with("EXPOSURE=")) continue;
+    const double exposure = std::strtod(line.c_str() + 9, nullptr);
+    if (std::isfinite(exposure) && exposure > 0) product *= exposure;
+  }
+  return product > 1e-30 && product < 1e30 ? product : 1;
+}
+
 }  // namespace
 
 Result<ContainerFacts> check_container(const fs::path& file) {
@@ -135,6 +153,9 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   if (format == "bmp") {
     AFTERGLOW_TRY(claimed, check_bmp(file, in));
     facts.fourth_is_padding = pads_bmp(in, size);
+  }
+  if (format == "hdr") {
+    AFTERGLOW_TRY(facts.exposure, radiance_exposure(file, head));
   }
   if (format == "jpeg2000") {
     AFTERGLOW_TRY(claimed, check_jpeg2000(file, in, size));

@@ -20,6 +20,7 @@ struct ContainerFacts {
   std::uint64_t least_file_bytes = 0;       ///< fewer cannot hold the pixels, however well they compress
   std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
   bool fourth_is_padding = false;           ///< BMP, Targa: the fourth byte of a pixel means nothing
+  double exposure = 1;                      ///< Radiance: what the light was multiplied by
   bool srgb = false;                        ///< PNG sRGB chunk
   bool icc = false;                         ///< PNG iCCP chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455

@@ -48,6 +48,8 @@ struct FileFacts {
   bool had_profile = false;  ///< an ICC profile was embedded
   bool had_chromaticities = false;
   int orientation = 1;
+  /// How many times as wide, for their height, pixels have become since (`--size` of another shape).
+  double widened = 1;
   int part = 0;  ///< of the colour
   std::array<std::string, 4>
       color_channels{};  ///< names in the file of R, G, B, A; grey has the same three; A may be empty

@@ -96,6 +96,13 @@ bool is_of_old_primaries(const std::string& name, const Imf::Header& from) {
          !(Imf::chromaticities(from) == Imf::Chromaticities());
 }
 
+/// How wide pixels are for their height, upright and scaled, where a file says that they are `ratio` as it stores them.
+/// Pictures of square pixels that are given another shape are meant to have it, on square pixels.
+float written_ratio(const FileFacts& facts, float ratio) {
+  if (!(ratio > 0) || ratio == 1) return ratio;
+  return static_cast<float>((swaps_axes(facts.orientation) ? 1 / ratio : ratio) * facts.widened);
+}
+
 /// PNG's limit for a keyword, and a size above which a text is no description any more.
 constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
@@ -117,10 +124,7 @@ Metadata kept_metadata(const FileFacts& facts) {
         entry.name.size() > kLongestName)
       continue;
     if (const auto* text = std::get_if<std::string>(&entry.value); text && text->size() > kLongestText) continue;
-    if (entry.name == "PixelAspectRatio" && swaps_axes(facts.orientation)) {
-      const float ratio = metadata_number(entry.value, 1);
-      entry.value = ratio > 0 ? 1 / ratio : 1.0f;
-    }
+    if (entry.name == "PixelAspectRatio") entry.value = written_ratio(facts, metadata_number(entry.value, 1));
     if (swaps_axes(facts.orientation)) {
       if (entry.name == "XResolution")
         entry.name = "YResolution";
@@ -141,8 +145,7 @@ void add_kept_attributes(Imf::Header& header, const FileFacts& facts) {
   } else {
     add_metadata(header, kept_metadata(facts));
   }
-  if (swaps_axes(facts.orientation) && header.pixelAspectRatio() > 0 && facts.exr_header)
-    header.pixelAspectRatio() = 1 / header.pixelAspectRatio();
+  if (facts.exr_header) header.pixelAspectRatio() = written_ratio(facts, header.pixelAspectRatio());
   // The pixels are Rec.709 now; a file that said what its primaries were goes on saying so.
   if (facts.had_chromaticities) Imf::addChromaticities(header, Imf::Chromaticities());
 }

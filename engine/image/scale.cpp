@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {
@@ -99,6 +103,17 @@ Rect times(const Rect& rect, int factor) {
   return {rect.x * factor, rect.y * factor, rect.width * factor, rect.height * factor};
 }
 
+/// What the new shape makes of that of the pixels, unless it is but rounded.
+void note_shape(Picture& picture, Size now) {
+  const Rect& old = picture.display_window;
+  const double across = static_cast<double>(now.width) / old.width, down = static_cast<double>(now.height) / old.height;
+  const double rounding = 1.0 / now.width + 1.0 / now.height;
+  if (!picture.facts || std::abs(across / down - 1) <= rounding) return;
+  auto facts = std::make_shared<FileFacts>(*picture.facts);
+  facts->widened *= down / across;
+  picture.facts = std::move(facts);
+}
+
 }  // namespace
 
 Size SizeWish::of(Size display) const {
@@ -157,6 +172,7 @@ void scale_picture(Picture& picture, const Scaling& scaling) {
     for (std::size_t i = 0; i < image.pixels.size(); i += 2) image.pixels[i] *= across, image.pixels[i + 1] *= down;
   }
   const Rect old = picture.display_window;
+  note_shape(picture, scaling.display);
   picture.data_window = data;
   picture.display_window = times({old.x, old.y, scaling.display.width, scaling.display.height}, scaling.finer);
 }

@@ -91,14 +91,14 @@ bool strikes(const char* name, unsigned codes) {
                                           call(QueueSubmit2, kHost | kDevice | kLost)                                  \
                                               call(WaitForFences, kHost | kDevice | kLost)                             \
                                                   call(GetFenceStatus, kHost | kDevice | kLost)                        \
-                                                      call(QueueWaitIdle, kHost | kDevice | kLost)                     \
-                                                          call(DeviceWaitIdle, kHost | kDevice | kLost)                \
-                                                              call(GetQueryPoolResults, kHost | kDevice | kLost) call( \
-                                                                  CreateSwapchainKHR, kHost | kDevice | kLost)         \
-                                                                  call(AcquireNextImageKHR,                            \
-                                                                       kHost | kDevice | kLost | kSurface | kDate)     \
-                                                                      call(QueuePresentKHR,                            \
-                                                                           kHost | kDevice | kLost | kSurface | kDate)
+                                                      call(QueueWaitIdle, kHost | kDevice | kLost) call(               \
+                                                          DeviceWaitIdle, kHost | kDevice | kLost)                     \
+                                                          call(GetQueryPoolResults, kHost | kDevice | kLost) call(     \
+                                                              CreateSwapchainKHR, kHost | kDevice | kLost | kSurface)  \
+                                                              call(AcquireNextImageKHR,                                \
+                                                                   kHost | kDevice | kLost | kSurface | kDate)         \
+                                                                  call(QueuePresentKHR,                                \
+                                                                       kHost | kDevice | kLost | kSurface | kDate)
 
 /// The function that the program gets instead of the next one below.
 template <int kNumber, typename Function>

@@ -86,6 +86,24 @@ TEST(FourthByte, IsAlphaWhereTheFileSaysSo) {
   EXPECT_TRUE(has_alpha("alpha.bmp", bmp, with_alpha)) << "some programs write it so";
 }
 
+TEST(Radiance, ExposureIsTakenBackAndXyzRefused) {
+  const TemporaryFolder folder;
+  const auto file = [&](const char* name, const std::string& lines) {
+    write_bytes(folder / name, "#?RADIANCE\n" + lines + "\n-Y 1 +X 2\n", "\x80\x40\x20\x81\x80\x40\x20\x81");
+    return folder / name;
+  };
+  const Picture plain = read_or_fail(file("plain.hdr", "FORMAT=32-bit_rle_rgbe\n"));
+  const Picture exposed =
+      read_or_fail(file("exposed.hdr", "EXPOSURE=2.5\nFORMAT=32-bit_rle_rgbe\nEXPOSURE= 2\nEXPOSURE=0\n"));
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_FLOAT_EQ(exposed.color.pixels[i], plain.color.pixels[i] / (i % 4 == 3 ? 1 : 5)) << i;
+  EXPECT_NEAR(plain.color.pixels[0], 1, 0.01);
+  Messages messages;
+  const auto xyz = read_picture(file("xyz.hdr", "FORMAT=32-bit_rle_xyze\n"), {}, messages.diagnostics);
+  ASSERT_FALSE(xyz);
+  EXPECT_THAT(xyz.error().text(), HasSubstr("holds CIE XYZ"));
+}
+
 TEST(Cineon, HoldsTheCodesWhereTheFormatSays) {
   const TemporaryFolder folder;
   const Picture picture = wedge(37, 5, false);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "image/scale.h"
 #include "image/srgb.h"
 #include "temporary_folder.h"
 #include "written_files.h"
@@ -151,6 +152,14 @@ TEST(Write, MetadataIsKeptExceptWhatDescribedTheOldFile) {
   EXPECT_EQ(exr.get_string_attribute("compression"), "zip");
   EXPECT_EQ(exr.tile_width, 0);
   EXPECT_FALSE(exr.find_attribute("BlenderMultiChannel"));
+  for (const auto& [size, ratio] : {std::pair(Size{40, 10}, 1.0f), {Size{11, 5}, 2.0f}, {Size{20, 40}, 8.0f}}) {
+    Picture scaled = picture;
+    scale_picture(scaled, {size});
+    for (const char* name : {"scaled.exr", "scaled.png"}) {
+      ASSERT_NO_FATAL_FAILURE(write_or_fail(scaled, folder / name));
+      EXPECT_NEAR(spec_of(folder / name).get_float_attribute("PixelAspectRatio", 1), ratio, 1e-2) << name;
+    }
+  }
 
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
   const OIIO::ImageSpec png = spec_of(folder / "o.png");
