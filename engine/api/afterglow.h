@@ -386,8 +386,8 @@ AFTERGLOW_API void afterglow_stack_reset_history(afterglow_stack *stack);
 
 /* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap
  * when there are none. An edit that is broken is returned as an error, once; the last good preset stays, and what was
- * prepared of it. What is set meanwhile is kept, and counts from the next good edit on. Where good edits come before a broken one, the next call returns the error. Nothing that was recorded
- * from the stack may be in flight. One thread at a time. Errors: script, device. */
+ * prepared of it. What is set meanwhile is kept, and counts from the next good edit on. Where good edits come before a
+ * broken one, the next call returns the error. Nothing that was recorded from the stack may be in flight. One thread at a time. Errors: script, device. */
 AFTERGLOW_API afterglow_error *afterglow_stack_update(afterglow_stack *stack, bool *changed);
 
 /* Reads the files now, or takes another text when `preset_text` is given (then not with `follow`), and takes the result

@@ -142,8 +142,9 @@ Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, 
 bool pads_targa(std::ifstream& in, std::uint64_t size) {
   constexpr unsigned kStraight = 3, kAssociated = 4;
   constexpr std::uint64_t kAttributes = 494;  // in the extension
+  const std::vector<unsigned char> head = bytes_at(in, 0, 18);
+  if (head.size() < 18 || head[16] != 32 || (head[17] & 15) != 0) return false;
   const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
-  if (bytes.size() < 18 || bytes[16] != 32 || (bytes[17] & 15) != 0) return false;
   const std::uint64_t at = targa_extension(bytes);
   const unsigned attributes = at != 0 && at + kAttributes < bytes.size() ? bytes[at + kAttributes] : 0;
   return attributes != kStraight && attributes != kAssociated;
@@ -151,13 +152,17 @@ bool pads_targa(std::ifstream& in, std::uint64_t size) {
 
 bool pads_bmp(std::ifstream& in, std::uint64_t size) {
   constexpr std::uint32_t kWithAlpha = 56, kPlain = 0, kMasks = 3;  // a header so long has a mask for alpha
-  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
-  if (bytes.size() < 34 || little_endian(&bytes[28], 2) != 32) return false;
-  const std::uint32_t header = little_endian(&bytes[14], 4), packing = little_endian(&bytes[30], 4);
+  constexpr std::uint64_t kTogether = 1 << 16;                      // of bytes, whole pixels
+  const std::vector<unsigned char> head = bytes_at(in, 0, 70);
+  if (head.size() < 34 || little_endian(&head[28], 2) != 32) return false;
+  const std::uint32_t header = little_endian(&head[14], 4), packing = little_endian(&head[30], 4);
   if (packing != kPlain && packing != kMasks) return false;
-  if (header >= kWithAlpha && bytes.size() >= 70 && little_endian(&bytes[66], 4) != 0) return false;
-  for (std::uint64_t at = little_endian(&bytes[10], 4) + std::uint64_t{3}; at < bytes.size(); at += 4)
-    if (bytes[at] != 0) return false;
+  if (header >= kWithAlpha && head.size() >= 70 && little_endian(&head[66], 4) != 0) return false;
+  for (std::uint64_t from = little_endian(&head[10], 4); from < size; from += kTogether) {
+    const std::vector<unsigned char> pixels = bytes_at(in, from, kTogether);
+    for (std::size_t at = 3; at < pixels.size(); at += 4)
+      if (pixels[at] != 0) return false;
+  }
   return true;
 }
 

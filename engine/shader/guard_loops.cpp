@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "shader/cpu/interleave.h"
 #include "shader/loop_weights.h"
+#include "shader/spirv_passes.h"
 #include "shader/weight.h"
 #include "shader/workgroup.h"
 
@@ -272,13 +272,8 @@ class Guard {
   /// Where the engine calls what an author wrote, for each pass of the kernel and each of its rows. Not in loops, which
   /// could renew their own turns.
   std::vector<std::size_t> calls_of_authors() const {
-    std::set<std::uint32_t> engines;
-    for (const Instruction& i : module_.code) {
-      if (i.op == spv::OpEntryPoint) engines.insert(i.words[2]);
-      const bool named = i.op == spv::OpName;
-      if (named && std::string_view(reinterpret_cast<const char*>(&i.words[2])).starts_with(kRowFunction))
-        engines.insert(i.words[1]);
-    }
+    const auto entry = std::ranges::find(module_.code, spv::OpEntryPoint, &Instruction::op);
+    const std::set<std::uint32_t> engines{entry->words[2], function_named(module_, kRowFunction)};
     std::vector<std::size_t> calls;
     std::uint32_t function = 0, label = 0;
     for (std::size_t at = 0; at < module_.code.size(); ++at) {

@@ -82,9 +82,9 @@ std::set<std::uint32_t> LoopWeights::functions_with(const std::function<bool(std
 
 /// Functions that wait, then the loops around such places.
 void LoopWeights::find_waits() {
-  waiting_ = functions_with([&](std::size_t at) { return code_[at].op == spv::OpControlBarrier; });
+  const auto waiting = functions_with([&](std::size_t at) { return code_[at].op == spv::OpControlBarrier; });
   const auto waits_at = [&](const Instruction& i) {
-    return i.op == spv::OpControlBarrier || (i.op == spv::OpFunctionCall && waiting_.contains(i.words[3]));
+    return i.op == spv::OpControlBarrier || (i.op == spv::OpFunctionCall && waiting.contains(i.words[3]));
   };
   std::uint32_t label = 0;
   for (const Instruction& i : code_) {

@@ -38,8 +38,7 @@ class LoopWeights {
   const std::vector<Loop>& loops_;
   std::map<std::uint32_t, std::size_t> functions_;
   std::map<std::uint32_t, std::uint64_t> turns_;  ///< of functions, without those of guarded loops
-  std::set<std::uint32_t> waiting_;               ///< functions with barriers, by themselves or in what they call
-  std::set<std::uint32_t> guarding_;              ///< likewise functions with guarded loops
+  std::set<std::uint32_t> guarding_;              ///< functions with guarded loops, by themselves or in what they call
   std::vector<bool> guarded_, waits_;
   std::vector<std::uint64_t> weights_;
 };

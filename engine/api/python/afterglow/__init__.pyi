@@ -89,10 +89,9 @@ class Stack:
         dither: bool = False,
     ) -> NDArray[Any]:
         """Runs the stack on a picture of (height, width, 3 or 4). float32 and float16 are scene-linear with associated
-        alpha, uint8 are sRGB codes with straight alpha. Other floats become float32, other numbers are refused as colours:
-        they may be codes of any kind. The result is a new array like
-        the source, of `dtype` where that is given, or `out`, which may be the source itself. With `region` the rest of
-        a new array is undefined. `time` in seconds is frame / fps where it is not given, as `afterglow run` counts."""
+        alpha, uint8 are sRGB codes with straight alpha. Other floats become float32, other numbers are refused as
+        colours: they may be codes of any kind. The result is a new array like the source, of `dtype` where that is
+        given, or `out`, which may be the source itself. With `region` the rest of a new array is undefined. `time` in seconds is frame / fps where it is not given, as `afterglow run` counts."""
 
     def set(self, name: str, value: _Value) -> None:
         """Sets ENTRY.SETTING, as in "glow.intensity". Text is read as on the command line."""
