@@ -184,7 +184,7 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
   const bool straight = encoding.alpha == AlphaKind::straight;
   // Associated integers were multiplied after they had been encoded: divide first, multiply again in linear light.
   const bool divide = encoding.alpha == AlphaKind::associated && (!curve.identity() || encoding.transform);
-  if (curve.identity() && !encoding.matrix && !encoding.transform && !straight)
+  if (curve.identity() && !encoding.matrix && !encoding.transform && !straight && encoding.gain == 1)
     return sanitize_linear(rgba, pixels, counts);
 
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -209,6 +209,8 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
       const double r = pixel[0], g = pixel[1], b = pixel[2];
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
     }
+    if (encoding.gain != 1)
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(pixel[c] * encoding.gain);
     if (straight || (divide && pixel[3] > 0))
       for (int c = 0; c < 3; ++c) pixel[c] *= pixel[3];
   }

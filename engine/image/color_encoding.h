@@ -33,6 +33,7 @@ struct ColorEncoding {
   double (*formula)(double) = nullptr;         ///< of `formula`: stored value to light
   std::array<std::vector<float>, 3> tables{};  ///< of `tables`: linear values for equally spaced stored values 0…1
   std::optional<Matrix3> matrix;               ///< to Rec.709, when the primaries are others
+  double gain = 1;                             ///< light of the scene ÷ light that is stored, whatever curve and matrix
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix
   AlphaKind alpha = AlphaKind::none;
   int max_code = 0;  ///< 255 or 65535 for integers of that many codes; 0: any value

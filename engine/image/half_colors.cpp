@@ -62,8 +62,8 @@ std::uint64_t hold_at_zero(std::uint16_t* rgba, std::size_t count) {
 }  // namespace
 
 bool stays_half(const ColorEncoding& encoding) {
-  return encoding.curve == TransferCurve::linear && !encoding.matrix && !encoding.transform && !encoding.grey &&
-         encoding.alpha != AlphaKind::straight;
+  return encoding.curve == TransferCurve::linear && !encoding.matrix && !encoding.transform && encoding.gain == 1 &&
+         !encoding.grey && encoding.alpha != AlphaKind::straight;
 }
 
 void HalfColors::take_rows(int begin, int end) {

@@ -95,10 +95,7 @@ class OiioFile : public PictureFile {
     const bool integer = !type.is_floating_point();
     if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
     encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
-    if (container_.exposure != 1) {  // the light of the scene is what was before
-      const double less = 1 / container_.exposure;
-      encoding.matrix = Matrix3{{{less, 0, 0}, {0, less, 0}, {0, 0, less}}};
-    }
+    encoding.gain = 1 / container_.exposure;
     const bool png = container_.kind == ContainerFacts::Kind::png;
     if (png && container_.codes) {
       if (use_numbers(encoding, diagnostics)) return encoding;  // before iCCP, as PNG has it

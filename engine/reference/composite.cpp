@@ -114,6 +114,21 @@ PixelMask layer_mask(const Settings& s, const Inputs& inputs) {
   };
 }
 
+/// Smoothed by (1, 2, 1) / 4 along both axes, pixels beyond the border being those at it.
+PixelMask id_mask(const Settings& s, const Inputs& inputs) {
+  const DoubleImage* layer = inputs.layers.at(s.text("layer"));
+  const auto is = [layer, index = s.number("index")](int x, int y) {
+    return layer->clamped(x, y).r == index ? 1.0 : 0.0;
+  };
+  if (!s.flag("antialias")) return [=](int x, int y, const Rgb&) { return is(x, y); };
+  return [=](int x, int y, const Rgb&) {
+    double sum = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) sum += is(x + dx, y + dy) * (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16;
+    return sum;
+  };
+}
+
 PixelMask pixel_mask(const Mask& mask, const Inputs& inputs, Size size) {
   const Entry entry{.effect = mask.name, .settings = mask.settings};
   const Settings s(entry);
@@ -123,6 +138,7 @@ PixelMask pixel_mask(const Mask& mask, const Inputs& inputs, Size size) {
   if (mask.name == "hue") return hue_mask(s);
   if (mask.name == "radial") return radial_mask(s, size);
   if (mask.name == "linear") return linear_mask(s, size);
+  if (mask.name == "id") return id_mask(s, inputs);
   return layer_mask(s, inputs);
 }
 
@@ -135,7 +151,7 @@ Rgb blend(const Rgb& below, const Rgb& above, const std::string& mode) {
 
 bool is_known(const Mask& mask) {
   if (mask.a) return is_known(*mask.a) && is_known(*mask.b);
-  static constexpr const char* kNames[] = {"depth", "hue", "layer", "linear", "luma", "radial"};
+  static constexpr const char* kNames[] = {"depth", "hue", "id", "layer", "linear", "luma", "radial"};
   return mask.kind == Mask::Kind::number || std::ranges::find(kNames, mask.name) != std::end(kNames);
 }
 

@@ -485,6 +485,12 @@
 ---@field softness? number|afterglow.Moving  Over which hues come and go, outside of the width. 0…180 degrees, default 20
 ---@field saturation? number|afterglow.Moving  From which on colours count fully; greys do not. 0…1, default 0.2
 
+---What has a number in a pass of numbers: an object or a material by its pass index, an object ID.
+---@class afterglow.masks.id : afterglow.MaskKeys
+---@field index? integer|afterglow.Moving  Which number. For several, add masks. integer 0…16777215, default 1
+---@field layer? string|afterglow.OfTime  The pass: IndexOB (objects) or IndexMA (materials) of Blender, whatever the renderer calls it. default "IndexOB"
+---@field antialias? boolean|afterglow.OfTime  Smooths the edges over 3 × 3 pixels; a pass of numbers has hard ones. default false
+
 ---A channel of a layer of the picture: a matte, an object's alpha, an albedo.
 ---@class afterglow.masks.layer : afterglow.MaskKeys
 ---@field layer? string|afterglow.OfTime  The layer; the end of its name is enough where no other ends so. default ""
@@ -563,6 +569,7 @@
 ---@field depth fun(settings: afterglow.masks.depth): afterglow.Mask  What lies between two distances, by the picture's depth.
 ---@field file fun(settings: afterglow.masks.file): afterglow.Mask  A picture from a file, stretched over the whole picture.
 ---@field hue fun(settings: afterglow.masks.hue): afterglow.Mask  Colours of a hue: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta.
+---@field id fun(settings: afterglow.masks.id): afterglow.Mask  What has a number in a pass of numbers: an object or a material by its pass index, an object ID.
 ---@field layer fun(settings: afterglow.masks.layer): afterglow.Mask  A channel of a layer of the picture: a matte, an object's alpha, an albedo.
 ---@field linear fun(settings: afterglow.masks.linear): afterglow.Mask  A gradient: nothing on one side of the picture, everything on the other.
 ---@field luma fun(settings: afterglow.masks.luma): afterglow.Mask  Pixels whose luminance lies between two values.

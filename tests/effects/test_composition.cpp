@@ -67,6 +67,10 @@ Scene light(Size size = {61, 37}) {
     for (int x = 0; x < size.width; ++x)
       layer.at(x, y) = Rgba((x % 9) / 8.0, (y % 5) / 4.0, ((x + y) % 7) / 6.0, (x * y % 11) / 10.0);
   scene.layers["matte"] = in_floats(layer);
+  constexpr int kObjects[] = {0, 3, 300, 1, 16777215, 3, 299};
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) layer.at(x, y) = Rgba(kObjects[(x / 5 + y / 3) % 7], 0, 0, 1);
+  scene.layers["objects"] = std::move(layer);
   return scene;
 }
 
@@ -115,6 +119,9 @@ TEST_F(Effects, MasksAgree) {
         "fx.mask.linear { from = { 0.9, 0.1 }, to = { 0.2, 0.6 } }",
         "fx.mask.layer { layer = \"matte\" }",
         "fx.mask.layer { layer = \"matte\", channel = \"luma\" }",
+        "fx.mask.id { layer = \"objects\", index = 3 }",
+        "fx.mask.id { layer = \"objects\", index = 300, antialias = true }",
+        "1 - fx.mask.id { layer = \"objects\", index = 0, antialias = true } - fx.mask.id { layer = \"objects\" }",
         "fx.mask.radial { invert = true }",
         "fx.mask.radial { } + fx.mask.linear { }",
         "fx.mask.radial { } - fx.mask.linear { }",

@@ -98,6 +98,13 @@ TEST(Radiance, ExposureIsTakenBackAndXyzRefused) {
   for (std::size_t i = 0; i < 8; ++i)
     EXPECT_FLOAT_EQ(exposed.color.pixels[i], plain.color.pixels[i] / (i % 4 == 3 ? 1 : 5)) << i;
   EXPECT_NEAR(plain.color.pixels[0], 1, 0.01);
+  for (const char* space : {"linear", "acescg", "gamma22"}) {
+    ReadOptions options;
+    options.input_space = space;
+    const Picture a = read_or_fail(folder / "exposed.hdr", options), b = read_or_fail(folder / "plain.hdr", options);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(a.color.pixels[i], b.color.pixels[i] / 5, 1e-7) << "also in the space " << space;
+  }
   Messages messages;
   const auto xyz = read_picture(file("xyz.hdr", "FORMAT=32-bit_rle_xyze\n"), {}, messages.diagnostics);
   ASSERT_FALSE(xyz);
