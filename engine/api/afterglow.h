@@ -387,7 +387,8 @@ AFTERGLOW_API void afterglow_stack_reset_history(afterglow_stack *stack);
 /* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap
  * when there are none. An edit that is broken is returned as an error, once; the last good preset stays, and what was
  * prepared of it. What is set meanwhile is kept, and counts from the next good edit on. Where good edits come before a
- * broken one, the next call returns the error. Nothing that was recorded from the stack may be in flight. One thread at a time. Errors: script, device. */
+ * broken one, the next call returns the error. Nothing that was recorded from the stack may be in flight. One thread at
+ * a time. Errors: script, device. */
 AFTERGLOW_API afterglow_error *afterglow_stack_update(afterglow_stack *stack, bool *changed);
 
 /* Reads the files now, or takes another text when `preset_text` is given (then not with `follow`), and takes the result
@@ -396,10 +397,13 @@ AFTERGLOW_API afterglow_error *afterglow_stack_reload(afterglow_stack *stack, af
 
 /* ---- what happened ------------------------------------------------------------------------------------------------*/
 
-/* How the settings of the last frame came about, as JSON: {"name", "position", "volumes": […], "entries": [{"name",
- * "effect", "state", "reason", "opacity", "blend", "mask", "composition": […], "settings": [{"name", "default",
- * "preset", "volumes", "override", "final"}]}]}. "composition" is of opacity, blend and mask what "settings" is of the
- * others; "mask" is missing where there is none. One thread at a time. */
+/* What the preset asks for, and how the settings of the last frame came about, as JSON: {"name", "inputs", "pre_roll",
+ * "position", "volumes": […], "entries": [{"name", "effect", "state", "reason", "opacity", "blend", "mask",
+ * "composition": […], "settings": [{"name", "default", "preset", "volumes", "override", "final"}]}]}. "composition" is
+ * of opacity, blend and mask what "settings" is of the others; "mask" is missing where there is none. "inputs" are the
+ * images besides the colour that effects can use: "depth", "normal", "motion", "layer:NAME" (of files alone).
+ * "pre_roll" is how many earlier frames the last frame needs to be what a whole sequence gives; 0 before there was one.
+ * One thread at a time. */
 AFTERGLOW_API afterglow_error *afterglow_stack_explain(const afterglow_stack *stack, afterglow_text **out);
 
 /* What ran in the last frame, as JSON: {"preset", "device", "choice", "choice_from", "max_error", "kernels", "skipped":

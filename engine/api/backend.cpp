@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/cache_folder.h"
+#include "graph/history.h"
 
 namespace afterglow::api {
 
@@ -184,6 +185,8 @@ Result<void> Backend::record(VkCommandBuffer commands) {
   last_.memory = stack.program()->memory();
   return {};
 }
+
+int Backend::pre_roll() const { return build_ ? afterglow::pre_roll(build_->graph) : 0; }
 
 BackendReport Backend::report() const {
   const Stack& stack = source_->stack();

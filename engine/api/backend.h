@@ -108,6 +108,8 @@ class Backend {
   /// As they are in the frame that was prepared last; before there is one, for no frame in particular.
   const std::vector<StackEntry>& entries() const { return build_ ? *build_->entries : preset().entries(); }
   const Explanation& explanation() const { return build_ ? *build_->explanation : preset().explanation(); }
+  /// Of the same frame: how many earlier frames it needs. 0 before there is one.
+  int pre_roll() const;
 
   /// One more override; one of the same name goes. Errors: usage, script: then the ones before stay.
   Result<void> set(const Override& one);

@@ -90,7 +90,7 @@ Command add_bake_command(CLI::App& program) {
   app->add_option("--frame", arguments->frame, "Number of the frame whose look it is, of looks that move (default 1)")
       ->type_name("N");
   app->add_option("--fps", arguments->fps, "Frames a second, for animated presets (default 24)")
-      ->check(frame_rates())
+      ->transform(frame_rates())
       ->type_name("N");
   app->footer(
       "The table gives sRGB codes of a display. Effects that look around, at places or back are refused.\n"

@@ -44,7 +44,7 @@ Result<void> repeat(const StressArguments& a, const stress::StressRequest& reque
   AFTERGLOW_TRY(const auto repeated, stress::repeat_case(a.repeat, request, console.diagnostics()));
   const auto& [check, outcome] = repeated;
   if (!outcome.applies) {
-    output("{}: no longer applies: the effect does not promise it for these settings, or refuses them\n", check);
+    output("{}: no longer applies: the effect does not promise it for these settings\n", check);
     return {};
   }
   if (!outcome.holds) return Error{ErrorKind::other, fmt::format("{}: {}", check, outcome.what), a.repeat};

@@ -37,14 +37,24 @@ CLI::Validator above_zero() {
   return {fault, "POSITIVE"};
 }
 
+/// "23.976" or, as videos have it, "24000/1001".
+std::optional<double> parse_rate(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) return parse_number<double>(text);
+  const auto frames = parse_number<double>(text.substr(0, slash)),
+             seconds = parse_number<double>(text.substr(slash + 1));
+  return frames && seconds && *seconds > 0 ? std::optional(*frames / *seconds) : std::nullopt;
+}
+
 CLI::Validator frame_rates() {
-  const auto fault = [](const std::string& text) {
-    const auto number = parse_number<double>(text);
-    const bool good = number && *number >= kSlowestRate && *number <= kFastestRate;
-    return good ? std::string()
-                : fmt::format("{} is no number of frames a second, {} to {}", text, kSlowestRate, kFastestRate);
+  const auto take = [](std::string& text) {
+    const auto number = parse_rate(text);
+    if (!number || !(*number >= kSlowestRate && *number <= kFastestRate))
+      return fmt::format("{} is no number of frames a second, {} to {}", text, kSlowestRate, kFastestRate);
+    text = fmt::format("{}", *number);
+    return std::string();
   };
-  return {fault, "FPS"};
+  return {take, "FPS"};
 }
 
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
@@ -93,6 +103,12 @@ void LayerArguments::add(CLI::App& command) {
           "--input-space", input_space,
           "Colour space that pictures are stored in, whatever they and the look say: " + join(input_space_names()))
       ->type_name("SPACE")
+      ->group(group);
+  command
+      .add_option("--overscan", overscan,
+                  "What lies outside of an EXR's display window: keep (default; part of the picture) or cut")
+      ->check(CLI::IsMember({"keep", "cut"}))
+      ->type_name("WORD")
       ->group(group);
   command.add_option("--depth", depth, "Depth from another file or channel; FILE may be a pattern")
       ->type_name("FILE[:CHANNEL]")
@@ -293,7 +309,7 @@ void AssumedPicture::add(CLI::App& command) {
       ->type_name("N")
       ->group("Picture");
   command.add_option("--fps", fps, "Frames a second, for animated presets (default 24)")
-      ->check(frame_rates())
+      ->transform(frame_rates())
       ->type_name("N")
       ->group("Picture");
   add_repeatable(command, "--without", without,

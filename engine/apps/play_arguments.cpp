@@ -47,7 +47,7 @@ void PlayArguments::add_input(CLI::App& app) {
 void PlayArguments::add_playing(CLI::App& app) {
   const std::string group = "Playing", alone = "Without a window";
   app.add_option("--fps", fps, "Frames a second (default: the video's, else 24)")
-      ->check(frame_rates())
+      ->transform(frame_rates())
       ->type_name("N")
       ->group(group);
   app.add_option("--speed", speed, "0.1 to 8, below 0 backwards (default 1)")->type_name("X")->group(group);
@@ -137,6 +137,7 @@ Result<PlayerOptions> PlayArguments::player() const {
   out.footage.frames = frames;
   AFTERGLOW_TRY(out.footage.proxy, parse_proxy(proxy));
   out.footage.read.layer = layers.layer;
+  out.footage.read.cut_overscan = layers.overscan == "cut";
   if (!layers.input_space.empty()) AFTERGLOW_CHECK(find_input_space(layers.input_space));
   out.footage.read.input_space = layers.input_space;
   out.footage.read.max_bytes = out.live.stack.max_memory;

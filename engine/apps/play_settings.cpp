@@ -41,6 +41,13 @@ Result<void> apply_line(CLI::App& command, const std::string& line, const std::s
   return {};
 }
 
+/// A comment begins with the line or behind a blank: shot.####.exr holds none.
+std::size_t comment_begin(const std::string& line) {
+  std::size_t at = line.find('#');
+  while (at != std::string::npos && at > 0 && line[at - 1] != ' ' && line[at - 1] != '\t') at = line.find('#', at + 1);
+  return at;
+}
+
 }  // namespace
 
 std::filesystem::path play_settings_file() {
@@ -59,7 +66,7 @@ Result<void> apply_play_settings(CLI::App& command, const std::string& text, con
   std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
-    const std::string said = without_blanks(line.substr(0, line.find('#')));
+    const std::string said = without_blanks(line.substr(0, comment_begin(line)));
     if (!said.empty()) AFTERGLOW_CHECK(apply_line(command, said, file, number));
   }
   return {};

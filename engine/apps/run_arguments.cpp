@@ -51,7 +51,7 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option(
          "--fps", a.fps,
          "Frames a second, for animated presets and videos (default: for videos what the first picture says, else 24)")
-      ->check(frame_rates())
+      ->transform(frame_rates())
       ->type_name("N")
       ->group(sequence);
   app.add_option(
@@ -84,7 +84,7 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->group(output);
   app.add_option("--output-space", a.output_space,
                  "Colour space of integer samples: a name of --input-space (default: cineon for DPX and Cineon, srgb "
-                 "for other pictures)")
+                 "for other pictures); of EXR a linear one: acescg, aces2065_1, lin_p3d65, lin_rec2020, linear")
       ->type_name("SPACE")
       ->group(output);
   app.add_option("--compression", a.compression,
@@ -181,6 +181,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--reference", flag(a.execution.reference)},
           {"--layer", a.layers.layer},
           {"--input-space", a.layers.input_space},
+          {"--overscan", a.layers.overscan == "cut" ? a.layers.overscan : ""},
           {"--depth", a.layers.depth},
           {"--normal", a.layers.normal},
           {"--motion", a.layers.motion},
@@ -237,6 +238,7 @@ Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_m
   options.takes_fps = !a.fps;
   options.max_memory = max_memory;
   options.read.layer = a.layers.layer;
+  options.read.cut_overscan = a.layers.overscan == "cut";
   options.read.max_bytes = max_memory;
   options.reuse = !a.execution.reference;
   const auto not_with = [](const char* option) {

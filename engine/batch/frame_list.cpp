@@ -247,8 +247,16 @@ Result<void> tell_gaps(const std::string& input, const std::vector<FrameFile>& f
 Result<void> add_files(const FrameListRequest& request, const OutputNames& names, const std::string& input,
                        const std::optional<std::vector<int>>& frames, FrameList& list, Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
-  if (!pattern.numbered && !movie_format(pattern.file(0)).empty())
-    return add_movie(request, names, pattern.file(0), frames, list, diagnostics);
+  if (!pattern.numbered && !movie_format(pattern.file(0)).empty()) {
+    const fs::path file = pattern.file(0);
+    const auto added = add_movie(request, names, file, frames, list, diagnostics);
+    if (added || added.error().kind != ErrorKind::io || request.inputs.size() == 1 || frames) return added;
+    FrameJob job{.input = file, .output = names.name(file, 1), .depth = {}, .normal = {}, .motion = {}};
+    job.sequence = file.string();
+    job.refused = added.error();
+    list.jobs.push_back(std::move(job));
+    return {};
+  }
   if (frames && !pattern.numbered)
     return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
   LeftOut others;
@@ -295,15 +303,17 @@ void hold_missing(std::vector<FrameJob>& jobs) {
 }
 
 Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diagnostics) {
-  std::optional<std::vector<int>> frames;
-  if (!request.frames.empty()) {
-    AFTERGLOW_TRY(frames, parse_frames(request.frames));
-  }
   AFTERGLOW_TRY(const OutputNames names, OutputNames::parse(request));
   FrameList list;
   bool standard = false;
   AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs));
-  for (const auto& input : inputs) {
+  std::optional<std::vector<int>> frames;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string &input = inputs[i], &text = request.frames_of.empty() ? request.frames : request.frames_of[i];
+    frames.reset();
+    if (!text.empty()) {
+      AFTERGLOW_TRY(frames, parse_frames(text));
+    }
     if (input == "-") {
       standard = true;
       AFTERGLOW_CHECK(add_standard_input(request, names, frames, list, diagnostics));

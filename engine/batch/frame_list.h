@@ -29,6 +29,7 @@ struct FrameJob {
   std::optional<double> time{};    ///< of a video's frame, in seconds from the first
   double fps = 0;                  ///< of the video; 0: unknown
   bool passing = false;            ///< from a stream: its pixels go when it is done
+  std::optional<Error> refused{};  ///< of a video that cannot be opened: it fails like a picture that cannot be read
   std::size_t missing = 0;         ///< frames before it that are not there; a video holds their places
   EarlierFiles earlier{};          ///< files of earlier frames that the output depends on
   std::string made_of{};           ///< what is noted behind the output, see resume.h; empty: nothing
@@ -40,11 +41,12 @@ struct FrameJob {
 struct FrameListRequest {
   /// Files, patterns, folders that hold one sequence, videos; "-" alone: standard input.
   std::vector<std::string> inputs;
-  std::string output;     ///< file, pattern or folder; a video; "-": standard output
-  std::string extension;  ///< --format, for outputs in a folder; empty: that of the input
-  std::string raw;        ///< --raw: how frames on standard input lie
-  SizeLimits limits{};    ///< of videos and of what comes on standard input
-  std::string frames;     ///< "1-24x2"; empty: all that exist
+  std::string output;                    ///< file, pattern or folder; a video; "-": standard output
+  std::string extension;                 ///< --format, for outputs in a folder; empty: that of the input
+  std::string raw;                       ///< --raw: how frames on standard input lie
+  SizeLimits limits{};                   ///< of videos and of what comes on standard input
+  std::string frames;                    ///< "1-24x2"; empty: all that exist
+  std::vector<std::string> frames_of{};  ///< of each input, in its place; empty: `frames` is of all
   LayerChoice depth, normal, motion;
 };
 

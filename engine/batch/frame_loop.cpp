@@ -49,6 +49,9 @@ FrameLoop::~FrameLoop() = default;
 
 Result<void> FrameLoop::run(Schedule& schedule) {
   const auto& frames = schedule.frames;
+  done_ = failed_ = 0;
+  non_finite_ = {};
+  replaced_.clear();
   pre_roll_ = schedule.earlier.size();
   total_ = frames.size() - pre_roll_;
   places_ = frames.empty() ? 0 : frames.back().index + 1;

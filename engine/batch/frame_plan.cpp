@@ -138,6 +138,7 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
 }
 
 Result<PlannedFrame> FramePlanner::plan(const FrameJob& job, double step, bool restart) {
+  if (job.refused) return *job.refused;
   PlannedFrame planned;
   auto header = read_header(job.input, read_options(job));
   if (!header) return named(std::move(header).error(), job);

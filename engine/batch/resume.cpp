@@ -82,8 +82,16 @@ std::string FrameNotes::text(const Hash& inputs, const Dependencies& depends) {
     const std::string name = asked.empty() ? names_.place(file) : asked == kOcioVariable ? asked : kInPath + asked;
     out += fmt::format("file {} {}\n", hash ? hash->hex() : "", name);
   }
+  for (const auto& file : depends.beside)
+    out += fmt::format("beside {} {}\n", content_or_none(file), names_.place(file));
   for (const auto& [name, value] : depends.environment) out += fmt::format("variable {}={}\n", name, value);
   return out;
+}
+
+/// Of a file that need not be there.
+std::string FrameNotes::content_or_none(const fs::path& file) {
+  const auto hash = hashes_.of(file);
+  return hash ? hash->hex() : "-";
 }
 
 fs::path FrameNotes::file_of(const std::string& name) const {
@@ -104,6 +112,10 @@ bool FrameNotes::is_same(const std::string& line, const FrameJob& job) {
     if (space == std::string::npos) return false;
     const auto hash = hashes_.of(file_of(file->substr(space + 1)));
     return hash && hash->hex() == file->substr(0, space);
+  }
+  if (const auto file = behind(line, "beside")) {
+    const std::size_t space = file->find(' ');
+    return space != std::string::npos && content_or_none(file_of(file->substr(space + 1))) == file->substr(0, space);
   }
   if (const auto given = behind(line, "variable")) {
     const std::size_t equals = given->find('=');

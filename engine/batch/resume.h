@@ -46,6 +46,7 @@ class FrameNotes {
  private:
   bool is_same(const std::string& line, const FrameJob& job);
   std::filesystem::path file_of(const std::string& name) const;
+  std::string content_or_none(const std::filesystem::path& file);
   Hash look_;
   SearchPath path_;
   PortableNames names_;

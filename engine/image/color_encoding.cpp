@@ -21,6 +21,7 @@ constexpr float kFarDepth = 1e10f;
 SanitizeCounts& operator+=(SanitizeCounts& a, const SanitizeCounts& b) {
   a.nan += b.nan;
   a.negative += b.negative;
+  a.far_below += b.far_below;
   a.too_large += b.too_large;
   a.alpha += b.alpha;
   a.depth += b.depth;
@@ -123,6 +124,7 @@ void make_finite(float& value, SanitizeCounts& counts) {
   } else if (value < -kLargestColor) {  // −infinity would become NaN in a matrix
     value = 0;
     ++counts.negative;
+    ++counts.far_below;
   }
 }
 
@@ -135,18 +137,19 @@ void make_alpha_finite(float& alpha, SanitizeCounts& counts) {
 /// The common case, linear Rec.709 with associated alpha. Blocks with nothing to mend are only read; the others take
 /// one pass without branches, so that it vectorises.
 void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
-  std::uint64_t nan = 0, negative = 0, large = 0, alpha = 0;
+  std::uint64_t nan = 0, negative = 0, far_below = 0, large = 0, alpha = 0;
   constexpr std::size_t kBlock = 1024;  // 32-bit counters inside a block keep all lanes equally wide
   for (std::size_t begin = 0; begin < pixels; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, pixels);
     if (all_plain(rgba + begin * 4, (end - begin) * 4)) continue;
-    std::uint32_t block_nan = 0, block_negative = 0, block_large = 0, block_alpha = 0;
+    std::uint32_t block_nan = 0, block_negative = 0, block_far = 0, block_large = 0, block_alpha = 0;
     for (std::size_t i = begin; i < end; ++i) {
       float* pixel = rgba + i * 4;
       for (int c = 0; c < 3; ++c) {
         const float v = pixel[c];
         block_nan += v != v;
         block_negative += v < 0;
+        block_far += v < -SanitizeCounts::kNoise;
         block_large += v > kLargestColor;
         const float positive = v >= kSmallestColor ? v : 0.0f;  // NaN fails the test
         pixel[c] = positive < kLargestColor ? positive : kLargestColor;
@@ -158,11 +161,13 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
     }
     nan += block_nan;
     negative += block_negative;
+    far_below += block_far;
     large += block_large;
     alpha += block_alpha;
   }
   counts.nan += nan;
   counts.negative += negative;
+  counts.far_below += far_below;
   counts.too_large += large;
   counts.alpha += alpha;
 }

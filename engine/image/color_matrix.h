@@ -10,6 +10,7 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;  ///< rows
 
 struct Chromaticities {
   std::array<double, 2> red, green, blue, white;  ///< CIE x, y
+  bool operator==(const Chromaticities&) const = default;
 };
 inline constexpr Chromaticities kRec709{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};
 

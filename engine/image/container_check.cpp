@@ -83,8 +83,8 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       facts.srgb = true;
     } else if (type == "cICP" && length == 4) {
       facts.codes = {data[0], data[1], data[3] == 0};
-    } else if (type == "iCCP") {
-      facts.icc = true;
+    } else if (type == "iCCP" && facts.profile.empty()) {
+      facts.profile = png_profile(in, at + 8, length);
     } else if (type == "gAMA" && length == 4 && number(0) > 0) {
       facts.gamma = number(0) / 1e5;
     } else if (type == "cHRM" && length == 32) {
@@ -153,6 +153,11 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   if (format == "bmp") {
     AFTERGLOW_TRY(claimed, check_bmp(file, in));
     facts.fourth_is_padding = pads_bmp(in, size);
+  }
+  if (format == "pnm") {
+    AFTERGLOW_TRY(facts.deep_pnm, deep_pnm(file, in, size));
+    if (facts.deep_pnm)
+      claimed = ClaimedSize{facts.deep_pnm->size, sizeof(float) * static_cast<unsigned>(facts.deep_pnm->channels)};
   }
   if (format == "hdr") {
     AFTERGLOW_TRY(facts.exposure, radiance_exposure(file, head));

@@ -11,6 +11,7 @@
 #include "core/geometry.h"
 #include "core/result.h"
 #include "image/color_matrix.h"
+#include "image/deep_pnm.h"
 
 namespace afterglow {
 
@@ -20,18 +21,20 @@ struct ContainerFacts {
   std::uint64_t least_file_bytes = 0;       ///< fewer cannot hold the pixels, however well they compress
   std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
   bool fourth_is_padding = false;           ///< BMP, Targa: the fourth byte of a pixel means nothing
+  std::optional<DeepPnm> deep_pnm;          ///< PNM of more than eight bits
   double exposure = 1;                      ///< Radiance: what the light was multiplied by
   bool srgb = false;                        ///< PNG sRGB chunk
-  bool icc = false;                         ///< PNG iCCP chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
   std::optional<Chromaticities> primaries;  ///< PNG cHRM
   /// PNG cICP, nclx of HEIF and AVIF: numbers of ITU-T H.273.
   struct Codes {
-    int primaries = 2, transfer = 2;
+    static constexpr int kUnsaid = 2;
+    int primaries = kUnsaid, transfer = kUnsaid;
     bool limited = false;  ///< samples have the range of video
+    bool whole() const { return primaries != kUnsaid && transfer != kUnsaid; }
   };
   std::optional<Codes> codes;
-  std::vector<std::uint8_t> profile;  ///< ICC, of WebP, HEIF and AVIF, whose reader does not pass it on
+  std::vector<std::uint8_t> profile;  ///< ICC, where the reader may not pass it on: PNG, WebP, HEIF and AVIF
 };
 
 /// Errors: io (missing, folder, no regular file, empty, unreadable; PNG, JPEG or DPX that is malformed or ends too

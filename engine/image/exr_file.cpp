@@ -25,6 +25,7 @@
 #include "core/parallel.h"
 #include "image/exr_lines.h"
 #include "image/exr_metadata.h"
+#include "image/exr_primaries.h"
 
 namespace afterglow {
 namespace {
@@ -132,13 +133,11 @@ class ExrFile : public PictureFile {
     encoding.alpha = color.channels[3] >= 0 ? AlphaKind::associated : AlphaKind::none;
     const Imf::Header& header = file_->header(color.part);
     if (!Imf::hasChromaticities(header) || encoding.grey) return encoding;
-    const Imf::Chromaticities& stored = Imf::chromaticities(header);
-    const auto xy = [](const Imath::V2f& v) { return std::array<double, 2>{v.x, v.y}; };
-    const Matrix3 matrix = to_rec709({xy(stored.red), xy(stored.green), xy(stored.blue), xy(stored.white)});
-    if (matrix == Matrix3{}) {
+    const auto primaries = own_primaries(header);
+    if (primaries) {
+      encoding.matrix = to_rec709(*primaries);
+    } else if (to_rec709(chromaticities_of(header)) == Matrix3{}) {
       diagnostics.warn(fmt::format("{}: its chromaticities make no sense; Rec.709 is assumed", path_.string()));
-    } else if (!nearly_equal(matrix, kIdentity, 2e-3)) {  // rounded Rec.709 stays untouched, bit for bit
-      encoding.matrix = matrix;
     }
     return encoding;
   }
@@ -160,6 +159,7 @@ class ExrFile : public PictureFile {
     }
     facts.exr_header = std::make_shared<Imf::Header>(file_->header(color.part));
     facts.had_chromaticities = Imf::hasChromaticities(*facts.exr_header);
+    if (color.channels[0] != color.channels[1]) facts.primaries = own_primaries(*facts.exr_header);
     facts.metadata = metadata_of(*facts.exr_header);
     return facts;
   }

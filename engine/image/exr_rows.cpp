@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "core/half.h"
@@ -83,9 +84,14 @@ void ExrColorRows::put_row(int row, std::uint8_t* line) {
   put(halves.data());
 }
 
-void ExrColorRows::warn_of_overflow(Diagnostics& diagnostics) const {
-  if (overflows_)
-    diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_.load()));
+void ExrColorRows::warn_of_overflow(const Imf::Header& header, Diagnostics& diagnostics) const {
+  std::uint64_t held = overflows_;
+  const Imf::Compression compression = header.compression();
+  if (type_ != SampleType::half && picture_.halves.empty() &&
+      (compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION))
+    for (std::size_t i = 0; i < picture_.color.pixels.size(); ++i)
+      held += i % 4 < 3 && std::abs(picture_.color.pixels[i]) > kMaxHalf;
+  if (held) diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", held));
 }
 
 Imath::Box2i exr_window(const Rect& rect) {

@@ -33,8 +33,8 @@ class ExrColorRows {
   void find_places(const Imf::Header& header);
   /// One row of the data window, counted from its top, into such a line. Thread-safe.
   void put_row(int row, std::uint8_t* line);
-  /// Says how many samples were held at ±65504, if any were.
-  void warn_of_overflow(Diagnostics& diagnostics) const;
+  /// Says how many samples were held at ±65504, if any were: halves, and floats that DWA makes halves of.
+  void warn_of_overflow(const Imf::Header& header, Diagnostics& diagnostics) const;
 
  private:
   const Picture& picture_;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "core/half.h"
+
 namespace afterglow {
 namespace {
 
@@ -35,27 +37,36 @@ Signs signs_of(const std::uint16_t* halves, std::size_t count) {
   return {std::ranges::any_of(signs, has_sign), std::ranges::any_of(carried, has_sign)};
 }
 
-/// Colours below 0, and −0, become 0, alphas stay. Returns how many were below 0. In blocks, as above: as integers,
-/// halves with a sign are negative too.
-std::uint64_t hold_at_zero(std::uint16_t* rgba, std::size_t count) {
+struct Below {
+  std::uint64_t zero = 0, noise = 0;  ///< SanitizeCounts::negative, far_below
+};
+
+/// Colours below 0, and −0, become 0, alphas stay. Counts those below 0. In blocks, as above: as integers, halves with
+/// a sign are negative too, and the larger the farther they are below 0.
+Below hold_at_zero(std::uint16_t* rgba, std::size_t count) {
   constexpr std::size_t kBlock = 16, kBlocksAtATime = 4096;
   constexpr std::int16_t kLeast = std::numeric_limits<std::int16_t>::min();  // the bits of −0
-  const auto hold = [](std::uint16_t& half, std::size_t channel) -> std::uint16_t {
+  const auto noise = static_cast<std::int16_t>(half_from_float(-SanitizeCounts::kNoise));
+  const auto hold = [noise](std::uint16_t& half, std::size_t channel, std::uint16_t& zero, std::uint16_t& far) {
     const auto value = static_cast<std::int16_t>(half);
     const std::int16_t floor = channel == 3 ? kLeast : std::int16_t{0};
     half = static_cast<std::uint16_t>(std::max(value, floor));
-    return value < floor && value != kLeast;
+    zero = static_cast<std::uint16_t>(zero + (value < floor && value != kLeast));
+    far = static_cast<std::uint16_t>(far + (value < floor && value > noise));
   };
-  std::uint64_t below = 0;
+  Below below;
   std::size_t i = 0;
   while (i + kBlock <= count) {
-    std::array<std::uint16_t, kBlock> found{};
+    std::array<std::uint16_t, kBlock> zero{}, far{};
     for (std::size_t blocks = 0; blocks < kBlocksAtATime && i + kBlock <= count; ++blocks, i += kBlock)
-      for (std::size_t k = 0; k < kBlock; ++k)
-        found[k] = static_cast<std::uint16_t>(found[k] + hold(rgba[i + k], k % 4));
-    below += std::accumulate(found.begin(), found.end(), std::uint64_t{0});
+      for (std::size_t k = 0; k < kBlock; ++k) hold(rgba[i + k], k % 4, zero[k], far[k]);
+    below.zero += std::accumulate(zero.begin(), zero.end(), std::uint64_t{0});
+    below.noise += std::accumulate(far.begin(), far.end(), std::uint64_t{0});
   }
-  for (; i < count; ++i) below += hold(rgba[i], i % 4);
+  std::uint16_t zero = 0, far = 0;
+  for (; i < count; ++i) hold(rgba[i], i % 4, zero, far);
+  below.zero += zero;
+  below.noise += far;
   return below;
 }
 
@@ -71,7 +82,10 @@ void HalfColors::take_rows(int begin, int end) {
   const std::size_t count = static_cast<std::size_t>(end - begin) * width_ * 4;
   const Signs signs = signs_of(first, count);
   if (signs.infinite) finite_ = false;
-  if (signs.any && !signs.infinite) negative_ += hold_at_zero(first, count);
+  if (!signs.any || signs.infinite) return;
+  const Below below = hold_at_zero(first, count);
+  negative_ += below.zero;
+  far_below_ += below.noise;
 }
 
 }  // namespace afterglow

@@ -22,12 +22,13 @@ class HalfColors {
   void take_rows(int begin, int end);
   bool finite() const { return finite_; }  ///< of all rows that were taken; else they have to be read as floats
   std::uint64_t negative() const { return negative_; }
+  std::uint64_t far_below() const { return far_below_; }
 
  private:
   std::uint16_t* rgba_;
   std::size_t width_;
   std::atomic<bool> finite_ = true;
-  std::atomic<std::uint64_t> negative_ = 0;
+  std::atomic<std::uint64_t> negative_ = 0, far_below_ = 0;
 };
 
 }  // namespace afterglow

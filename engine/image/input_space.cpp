@@ -101,6 +101,8 @@ constexpr std::array kSpaces{
 
 }  // namespace
 
+bool InputSpace::linear() const { return to_linear == as_it_is; }
+
 std::span<const InputSpace> input_spaces() { return kSpaces; }
 
 std::vector<std::string> input_space_names() {
@@ -117,7 +119,7 @@ Result<const InputSpace*> find_input_space(const std::string& name) {
 }
 
 void use_input_space(const InputSpace& space, ColorEncoding& encoding) {
-  encoding.curve = space.to_linear == as_it_is ? TransferCurve::linear : TransferCurve::formula;
+  encoding.curve = space.linear() ? TransferCurve::linear : TransferCurve::formula;
   encoding.formula = space.to_linear;
   encoding.transform.reset();
   encoding.matrix.reset();

@@ -18,6 +18,7 @@ struct InputSpace {
   double (*to_linear)(double);  ///< stored value (0…1 of full codes) to light; 1 is a white that diffuses
   Chromaticities primaries;
   bool of_display = false;  ///< a curve of displays: eight bits show no steps
+  bool linear() const;      ///< stored values are light
 };
 
 /// All of them, by name. docs/math.md §24 has curves and sources.

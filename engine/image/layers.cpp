@@ -215,6 +215,7 @@ std::optional<Error> nothing_readable(const std::vector<FilePart>& parts, const 
 
 /// The depth channel of a layer, or −1. `certain`: the name says depth; else any single channel will do.
 int depth_of(const Layer& l, bool certain) {
+  if (certain && l.last == "mist") return -1;  // 0…1, between two distances that nobody knows
   const bool vector = l.find({"x"}) >= 0;
   if (!vector)
     if (const int z = l.find({"z"}); z >= 0 && !named_normal(l)) return z;
@@ -223,6 +224,12 @@ int depth_of(const Layer& l, bool certain) {
   if (l.channels.size() == 1) return l.channels[0];
   if (const int z = l.find({"v", "y", "r"}); z >= 0) return z;
   return certain ? -1 : l.channels[0];
+}
+
+/// A "Z" in a layer of another name: "Denoising Depth.Z", which has 0 where nothing is, comes before "Depth.Z" in
+/// files.
+bool unsure_depth(const Layer& l) {
+  return !l.name.empty() && !named_depth(l) && !has_rgb(l) && l.find({"depth", "zdepth", "pz"}) < 0;
 }
 
 std::optional<std::vector<int>> normal_of(const Layer& l, bool certain) {
@@ -251,8 +258,10 @@ std::optional<std::vector<int>> motion_of(const Layer& l, bool certain) {
 }
 
 /// Candidates in order of nearness to the colour layer: itself, its eye of a stereo picture ("depth.right" beside
-/// "rgba.right"; in the same view layer first), its view layer, plain ones, the rest.
-std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const ChannelChoice* color) {
+/// "rgba.right"; in the same view layer first), its view layer, plain ones, the rest. Of those that are equally near,
+/// the ones that are `unsure` come last.
+std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const ChannelChoice* color,
+                                      bool (*unsure)(const Layer&) = nullptr) {
   const Layer* own = nullptr;
   for (const Layer& layer : layers)
     if (color && layer.part == color->part &&
@@ -266,6 +275,7 @@ std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const Ch
     return l->group == own->group ? 3 : l->group.empty() ? 4 : 5;
   };
   std::vector<const Layer*> sorted = all_of(layers);
+  if (unsure) std::ranges::stable_partition(sorted, [&](const Layer* l) { return !unsure(*l); });
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](const Layer* a, const Layer* b) { return distance(a) < distance(b); });
   return sorted;
@@ -311,7 +321,7 @@ Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& par
                                                 const ChannelChoice* color) {
   const std::vector<Layer> layers = layers_of(parts);
   if (name.empty()) {
-    for (const Layer* layer : by_nearness(layers, color))
+    for (const Layer* layer : by_nearness(layers, color, unsure_depth))
       if (const int channel = depth_of(*layer, true); channel >= 0)
         return std::optional(ChannelChoice{layer->part, {channel}});
     return std::optional<ChannelChoice>();

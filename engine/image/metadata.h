@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "image/color_matrix.h"
+
 namespace afterglow {
 
 struct Rational {
@@ -47,6 +49,8 @@ struct FileFacts {
   bool floating = false;     ///< half or float samples
   bool had_profile = false;  ///< an ICC profile was embedded
   bool had_chromaticities = false;
+  /// Of linear colours as an EXR stores them; none: Rec.709, or as if.
+  std::optional<Chromaticities> primaries;
   int orientation = 1;
   /// How many times as wide, for their height, pixels have become since (`--size` of another shape).
   double widened = 1;

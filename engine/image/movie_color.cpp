@@ -128,6 +128,7 @@ bool use_codes(int primaries, int transfer, ColorEncoding& encoding) {
   const bool said = known || primaries == 1 || primaries == kUnsaid;
   if (!said || (transfer != kUnsaid && !is_known_transfer(transfer))) return false;
   if (transfer != kUnsaid) use_transfer(encoding, transfer);
+  if (primaries != kUnsaid) encoding.matrix.reset();
   if (!known || encoding.grey) return true;
   const Matrix3 matrix = to_rec709(*known);
   if (!nearly_equal(matrix, kIdentity, 1e-6)) encoding.matrix = matrix;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/movie_container.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
@@ -34,8 +35,29 @@ constexpr std::array kMovieSignatures{
 
 /// Pictures whose files are boxes too.
 bool is_still(std::string_view brand) {
-  for (const std::string_view still : {"avif"sv, "heic"sv, "heix"sv, "mif1"sv, "jxl "sv, "jp2 "sv, "crx "sv})
+  for (const std::string_view still :
+       {"avif"sv, "avci"sv, "heic"sv, "heix"sv, "heim"sv, "heis"sv, "mif1"sv, "mif2"sv, "jxl "sv, "jp2 "sv, "crx "sv})
     if (brand == still) return true;
+  return false;
+}
+
+/// Sequences of such pictures, and videos whose files say that they hold one picture besides.
+bool is_moving(std::string_view brand) {
+  for (const std::string_view moving : {"avis"sv, "msf1"sv, "hevc"sv, "hevx"sv, "iso"sv, "mp4"sv, "qt"sv, "M4V"sv})
+    if (brand.starts_with(moving)) return true;
+  return false;
+}
+
+/// By the brands of the first box, ISO/IEC 14496-12, 4.3: the one it is made for, or one that it is compatible with.
+bool holds_still(std::string_view head) {
+  constexpr std::size_t kMajor = 8, kCompatible = 16, kBrand = 4;
+  if (head.size() < kMajor + kBrand || head.substr(4, 4) != "ftyp") return false;
+  std::uint32_t size = 0;
+  for (const char c : head.substr(0, 4)) size = size << 8 | static_cast<std::uint8_t>(c);
+  const std::string_view major = head.substr(kMajor, kBrand);
+  if (is_still(major) || is_moving(major)) return is_still(major);
+  for (std::size_t at = kCompatible; at + kBrand <= std::min<std::size_t>(size, head.size()); at += kBrand)
+    if (is_still(head.substr(at, kBrand))) return true;
   return false;
 }
 
@@ -115,8 +137,7 @@ std::string movie_format(const std::filesystem::path& file) {
   const std::string_view head(bytes.data(), static_cast<std::size_t>(in.gcount()));
   in.clear();
   if (const auto format = format_by_signature(kMovieSignatures, head); !format.empty()) {
-    const bool still = head.size() >= 12 && head.substr(4, 4) == "ftyp" && is_still(head.substr(8, 4));
-    return still ? "" : std::string(format);
+    return holds_still(head) ? "" : std::string(format);
   }
   if (head.starts_with("GIF8"sv)) return gif_moves(in) ? "gif" : "";
   if (head.starts_with("\x89PNG"sv)) return png_moves(in) ? "apng" : "";

@@ -97,14 +97,14 @@ class OiioFile : public PictureFile {
     encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
     encoding.gain = 1 / container_.exposure;
     const bool png = container_.kind == ContainerFacts::Kind::png;
-    if (png && container_.codes) {
-      if (use_numbers(encoding, diagnostics)) return encoding;  // before iCCP, as PNG has it
-    }
+    const bool whole = png && container_.codes && container_.codes->whole();
+    if (whole && use_numbers(encoding, diagnostics)) return encoding;  // before iCCP, as PNG has it
     if (use_profile(spec, encoding, diagnostics)) return encoding;
-    if (!png && container_.codes) {
-      use_numbers(encoding, diagnostics);
-    } else if (png) {
+    if (png) {
       use_png_chunks(encoding, diagnostics);
+      if (container_.codes && !whole) use_numbers(encoding, diagnostics);  // what they say
+    } else if (container_.codes) {
+      use_numbers(encoding, diagnostics);
     } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
     }
@@ -158,6 +158,8 @@ class OiioFile : public PictureFile {
       if (i > 0) part.name = spec.get_string_attribute("oiio:subimagename", fmt::format("page{}", i + 1));
       if (spec.depth > 1) part.unreadable = "is a volume, not a picture";
       if (spec.deep) part.unreadable = "is a deep picture, which is not supported";
+      if (inks(spec))
+        part.unreadable = "holds inks (CMYK with an alpha, spot colours), which cannot be read; make it RGB";
       if (const auto fits = check_sides(part.data_window, "data window", limits, path_); !fits) {
         if (i == 0) return fits;
         part.unreadable = fits.error().message;  // kept, so that parts and sub-images have the same numbers
@@ -169,6 +171,13 @@ class OiioFile : public PictureFile {
     return {};
   }
 
+  /// A separated TIFF of which OpenImageIO did not make RGB: it does of cyan, magenta, yellow and black alone.
+  bool inks(const OIIO::ImageSpec& spec) const {
+    constexpr int kSeparated = 5;
+    return format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kSeparated &&
+           spec.nchannels != 3;
+  }
+
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {
     return specs_[static_cast<std::size_t>(color.part)].channelformat(color.channels[0]);
   }
@@ -177,6 +186,7 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
     const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
+    if (container_.deep_pnm) return read_pnm(first, channels);
     // Looking for further pages of a TIFF leaves its reader in a state in which it keeps silent when a disk fails.
     if (format_ == "tiff" && !std::exchange(opened_for_pixels_, true)) AFTERGLOW_CHECK(open_input(format_));
     static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
@@ -185,6 +195,17 @@ class OiioFile : public PictureFile {
     // OpenImageIO 2.4 returns true, and black, for strips of a TIFF that are damaged or missing; but it says so.
     const std::string why = input_->geterror();
     if (!read || !why.empty()) return failed(message_of(why));
+    return {};
+  }
+
+  Result<void> read_pnm(const ReadTarget& first, int channels) const {
+    const DeepPnm& form = *container_.deep_pnm;
+    AFTERGLOW_TRY(const std::vector<float> samples, read_deep_pnm(path_, form));
+    const auto all = static_cast<std::size_t>(form.channels);
+    for (std::size_t y = 0, i = 0; y < static_cast<std::size_t>(form.size.height); ++y)
+      for (std::size_t x = 0; x < static_cast<std::size_t>(form.size.width); ++x, i += all)
+        std::copy_n(&samples[i + static_cast<std::size_t>(first.channel)], channels,
+                    first.base + y * first.row_stride + x * first.pixel_stride);
     return {};
   }
 

@@ -64,4 +64,14 @@ Image upright(Image image, int orientation) {
   return out;
 }
 
+void turn_vectors(Image& vectors, int orientation) {
+  const Turn turn = turn_of(orientation);
+  for (std::size_t i = 0; i + 1 < vectors.pixels.size(); i += 2) {
+    float &x = vectors.pixels[i], &y = vectors.pixels[i + 1];
+    if (turn.flip_x) x = -x;
+    if (turn.flip_y) y = -y;
+    if (turn.swap) std::swap(x, y);
+  }
+}
+
 }  // namespace afterglow

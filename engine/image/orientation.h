@@ -16,5 +16,7 @@ Rect upright(const Rect& window, const Rect& display, int orientation);
 
 /// The stored pixels turned upright. Returns `image` itself for 1; else needs a second image of the same size.
 Image upright(Image image, int orientation);
+/// Vectors in pixels (two channels, x to the right, y down) of pixels that were turned upright point as the pixels do.
+void turn_vectors(Image& vectors, int orientation);
 
 }  // namespace afterglow

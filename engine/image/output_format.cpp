@@ -120,6 +120,32 @@ Error unknown_format(const std::filesystem::path& file, const std::vector<std::s
           nearest_name(extension, known)};
 }
 
+namespace {
+
+/// EXR alone says what primaries its light has.
+Result<void> check_linear_space(const OutputFormat& format, const WriteOptions& options,
+                                const std::filesystem::path& file) {
+  const std::string name = format.extensions[0].substr(1);
+  if (format.kind != OutputKind::exr)
+    return Error{ErrorKind::usage,
+                 fmt::format("{} files hold scene-linear light; --output-space is for integer samples and EXR", name),
+                 file.string()};
+  std::vector<std::string> linear;
+  for (const InputSpace& space : input_spaces())
+    if (space.linear()) linear.emplace_back(space.name);
+  if (!options.space->linear())
+    return Error{ErrorKind::usage, fmt::format("{} files hold scene-linear light, not {}", name, options.space->name()),
+                 file.string(), 0, join(linear)};
+  if (options.keep_layers)
+    return Error{ErrorKind::usage,
+                 "--keep-layers writes colours in the primaries of the layers beside them, not in an "
+                 "--output-space",
+                 file.string()};
+  return {};
+}
+
+}  // namespace
+
 Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options) {
   const OutputFormat* const found = find_format(file);
   if (!found) return unknown_format(file, picture_extensions());
@@ -133,10 +159,7 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
         file.string(), 0, join(names)};
   }
   if (options.space && !is_integer(sample_type(*found, options, nullptr)))
-    return Error{ErrorKind::usage,
-                 fmt::format("{} files hold scene-linear light; --output-space is for integer samples",
-                             found->extensions[0].substr(1)),
-                 file.string()};
+    AFTERGLOW_CHECK(check_linear_space(*found, options, file));
   if (options.keep_layers && found->kind != OutputKind::exr)
     return Error{ErrorKind::usage, "only EXR files can keep layers", file.string(), 0, ".exr"};
   if (options.compression.empty()) return found;

@@ -42,7 +42,8 @@ double inverse_of(double (*to_linear)(double), double light) {
 
 }  // namespace
 
-OutputSpace::OutputSpace(const InputSpace& space) : name_(space.name), of_display_(space.of_display) {
+OutputSpace::OutputSpace(const InputSpace& space)
+    : name_(space.name), of_display_(space.of_display), linear_(space.linear()), primaries_(space.primaries) {
   of_zero_ = static_cast<float>(inverse_of(space.to_linear, 0));
   for (std::uint32_t part = part_of(kSmallest); part <= part_of(kLargest); ++part)
     table_.push_back(

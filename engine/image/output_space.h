@@ -22,6 +22,8 @@ class OutputSpace {
 
   const char* name() const { return name_; }
   bool of_display() const { return of_display_; }  ///< see InputSpace
+  bool linear() const { return linear_; }
+  const Chromaticities& primaries() const { return primaries_; }
   /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
   /// is held at its ends, NaN at that of 0. `stored` may be `rgba` itself.
   void encode(const float* rgba, std::size_t pixels, float* stored) const;
@@ -34,7 +36,8 @@ class OutputSpace {
   std::size_t encode_pairs(const float* rgba, std::size_t pixels, float* stored) const;
 
   const char* name_;
-  bool of_display_;
+  bool of_display_, linear_;
+  Chromaticities primaries_;
   std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others
   float of_zero_ = 0;              ///< what light 0 is stored as
   std::vector<float> table_;       ///< stored values at the ends of equal parts of octaves

@@ -60,7 +60,10 @@ class StoredRows {
     if (rules_.layout->alpha) make_straight(rgba.data(), width);
     rules_.space->encode(rgba.data(), width, rgba.data());
   }
-  float noise(std::size_t x, int y) const { return rules_.dither ? 1 - blue_noise(static_cast<int>(x), y) : 0.5f; }
+  /// What lies within a thousandth of a code is that code everywhere, as in encode.cpp.
+  float noise(std::size_t x, int y) const {
+    return rules_.dither ? 1 - (blue_noise(static_cast<int>(x), y) + 0.001f) / 1.002f : 0.5f;
+  }
 
  private:
   const Picture& picture_;

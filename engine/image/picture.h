@@ -19,17 +19,20 @@ namespace afterglow {
 /// Colours and alpha are held at ±this, where they are read and behind every pass: sums and products of a few of them
 /// stay finite.
 inline constexpr float kLargestColor = 1e30f;
-/// Colours, depths, normals and motion below it are read as 0: devices may take denormal numbers for 0 in arithmetic, but not where they only copy.
+/// Colours, depths, normals and motion below it are read as 0: devices may take denormal numbers for 0 in arithmetic,
+/// but not where they only copy.
 inline constexpr float kSmallestColor = std::numeric_limits<float>::min();
 
 /// What had to be made finite before the stack (math.md §18).
 struct SanitizeCounts {
-  std::uint64_t nan = 0;        ///< NaN colour samples set to 0
-  std::uint64_t negative = 0;   ///< negative colour samples set to 0
-  std::uint64_t too_large = 0;  ///< colour samples above kLargestColor (or +infinity) set to it
-  std::uint64_t alpha = 0;      ///< non-finite alpha samples (NaN and ±infinity) set to 1
-  std::uint64_t depth = 0;      ///< non-finite depths set to 1e10
-  std::uint64_t normal = 0;     ///< non-finite normals set to 0 0 0
+  static constexpr float kNoise = 0.01f;  ///< what ringing and lossy compression take below 0
+  std::uint64_t nan = 0;                  ///< NaN colour samples set to 0
+  std::uint64_t negative = 0;             ///< negative colour samples set to 0
+  std::uint64_t far_below = 0;            ///< those of them below -kNoise
+  std::uint64_t too_large = 0;            ///< colour samples above kLargestColor (or +infinity) set to it
+  std::uint64_t alpha = 0;                ///< non-finite alpha samples (NaN and ±infinity) set to 1
+  std::uint64_t depth = 0;                ///< non-finite depths set to 1e10
+  std::uint64_t normal = 0;               ///< non-finite normals set to 0 0 0
 };
 
 struct FileFacts;  // format, pixel type, metadata, …: image/metadata.h; kept for the writer

@@ -83,9 +83,16 @@ Rect upright_display(const FilePart& part) {
   return upright(part.display_window, part.display_window, part.orientation);
 }
 
-Rect upright_frame(const FilePart& part) {
+Rect upright_frame(const ReadPlan& plan) {
   constexpr std::uint64_t kMostTimes = 4;
-  const Rect data = upright_data(part), display = upright_display(part);
+  Rect data = upright_data(plan.color_part());
+  const Rect display = upright_display(plan.color_part());
+  if (plan.cut_overscan) {
+    const int left = std::max(data.x, display.x), top = std::max(data.y, display.y);
+    const int right = std::min(data.x + data.width, display.x + display.width);
+    const int bottom = std::min(data.y + data.height, display.y + display.height);
+    if (left < right && top < bottom) data = {left, top, right - left, bottom - top};
+  }
   const int x0 = std::min(data.x, display.x), y0 = std::min(data.y, display.y);
   const std::int64_t x1 = std::max(std::int64_t{data.x} + data.width, std::int64_t{display.x} + display.width),
                      y1 = std::max(std::int64_t{data.y} + data.height, std::int64_t{display.y} + display.height);
@@ -104,6 +111,7 @@ Rect upright_auxiliary(const ReadPlan& plan, const AuxiliaryPlan& auxiliary) {
 Result<ReadPlan> make_read_plan(const fs::path& file, const ReadOptions& options,
                                 const std::vector<std::string>& auxiliary) {
   ReadPlan plan;
+  plan.cut_overscan = options.cut_overscan;
   if (options.movie) {
     plan.file = Movie::frame(options.movie, options.movie_frame);
   } else {
@@ -131,7 +139,7 @@ Result<ReadPlan> make_read_plan(const fs::path& file, const ReadOptions& options
 }
 
 std::uint64_t host_bytes(const ReadPlan& plan, const std::vector<std::string>& wanted) {
-  const std::uint64_t frame = area(upright_frame(plan.color_part())), pixels = area(plan.color_part().data_window);
+  const std::uint64_t frame = area(upright_frame(plan)), pixels = area(plan.color_part().data_window);
   std::uint64_t images = frame * 4 * sizeof(float);
   std::uint64_t second = plan.color_part().orientation > 1 || frame != pixels ? pixels * 4 * sizeof(float) : 0;
   std::uint64_t buffers = plan.file->buffer_bytes(plan.color.part);

@@ -42,6 +42,7 @@ struct ReadPlan {
   std::unique_ptr<PictureFile> file;
   ChannelChoice color;
   std::vector<AuxiliaryPlan> auxiliary;
+  bool cut_overscan = false;
 
   PictureFile& file_of(const AuxiliaryPlan& plan) const { return plan.other ? *plan.other : *file; }
   const FilePart& color_part() const { return file->parts()[static_cast<std::size_t>(color.part)]; }
@@ -64,8 +65,9 @@ Rect upright_data(const FilePart& part);
 Rect upright_display(const FilePart& part);
 /// What is read: the data window, and the rest of the display window, where there is nothing: lengths, centres and what
 /// is kept from frame to frame go by the frame, not by the box that a renderer has found something in. A window that
-/// would be over four times as large as both is left as it is.
-Rect upright_frame(const FilePart& part);
+/// would be over four times as large as both is left as it is. What lies outside of the display window is part of it
+/// unless it is cut.
+Rect upright_frame(const ReadPlan& plan);
 /// Where an auxiliary image lies. In a file of another display window, as the colour's pixels do.
 Rect upright_auxiliary(const ReadPlan& plan, const AuxiliaryPlan& auxiliary);
 

@@ -111,17 +111,24 @@ Error non_finite_error(const Picture& picture, const fs::path& file) {
           file.string()};
 }
 
-/// Colours that the way to Rec.709 made negative. A few are noise; primaries of older television are too near for a
-/// word.
+/// Colours that the file or the way to Rec.709 made negative. A few are noise; primaries of older television are too
+/// near for a word.
 void report_gamut(const Picture& picture, const ColorEncoding& encoding, const fs::path& file,
                   Diagnostics& diagnostics) {
   constexpr std::uint64_t kFew = 1000;  // one in so many pixels
   constexpr double kNear = 0.1;
   const bool wide = encoding.transform || (encoding.matrix && !nearly_equal(*encoding.matrix, kIdentity, kNear));
-  const std::uint64_t negative = picture.sanitized.negative;
-  if (!wide || negative * kFew <= static_cast<std::uint64_t>(picture.color.size().area())) return;
-  diagnostics.warn_once("outside Rec.709", fmt::format("{}: {} samples are of colours outside Rec.709; they end at 0",
-                                                       file.string(), negative));
+  const auto many = [&](std::uint64_t count) {
+    return count * kFew > static_cast<std::uint64_t>(picture.color.size().area());
+  };
+  const SanitizeCounts& counts = picture.sanitized;
+  if (wide && many(counts.negative)) {
+    diagnostics.warn_once("outside Rec.709", fmt::format("{}: {} samples are of colours outside Rec.709; they end at 0",
+                                                         file.string(), counts.negative));
+  } else if (many(counts.far_below) && picture.non_finite.empty()) {  // else they stand in what `report` says
+    diagnostics.warn_once("below 0", fmt::format("{}: {} samples are below {}; light is not negative, they count as 0",
+                                                 file.string(), counts.far_below, -SanitizeCounts::kNoise));
+  }
 }
 
 /// Effects count in pixels: a round blur of pixels that are not square is an ellipse when they are shown.
@@ -135,6 +142,19 @@ void report_pixel_shape(const FileFacts& facts, const fs::path& file, Diagnostic
                         fmt::format("{}: its pixels are {:.3g} times as wide as high; effects take them for square: "
                                     "what they make round is not round when the picture is shown",
                                     file.string(), wide));
+}
+
+/// Centres and heights of effects go by all that was read.
+void report_overscan(const Picture& picture, const fs::path& file, Diagnostics& diagnostics) {
+  constexpr int kFew = 100;  // of a side one part in so many: what renderers read beside the picture for their filters
+  const Rect &data = picture.data_window, &display = picture.display_window;
+  const int x = std::max(display.x - data.x, data.x + data.width - display.x - display.width);
+  const int y = std::max(display.y - data.y, data.y + data.height - display.y - display.height);
+  if (x * kFew <= display.width && y * kFew <= display.height) return;
+  diagnostics.warn_once("overscan",
+                        fmt::format("{}: the overscan around its {}×{} pixels counts as part of the picture, for "
+                                    "centres and heights too; --overscan cut leaves it out",
+                                    file.string(), display.width, display.height));
 }
 
 void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diagnostics& diagnostics) {
@@ -200,6 +220,7 @@ Result<bool> read_halves(const ReadPlan& plan, const ColorEncoding& encoding, co
   picture.color.channels = 4;
   picture.halves = std::move(halves);
   picture.sanitized.negative = colors.negative();
+  picture.sanitized.far_below = colors.far_below();
   return true;
 }
 
@@ -209,25 +230,30 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   const FilePart& part = plan.color_part();
   Picture picture;
   const Rect data = upright_data(part);
-  picture.data_window = upright_frame(part);
+  picture.data_window = upright_frame(plan);
   picture.display_window = upright_display(part);
   picture.has_alpha = plan.color.channels[3] >= 0;
-  picture.facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
+  const auto facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
+  picture.facts = facts;
   picture.layers = layer_names(plan.file->parts());
   if (options.layer.empty())
     if (const auto equal = equal_colors(plan.file->parts()); !equal.empty())
       diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
                                                        plan.file->path().string(), equal.front(), join(equal)));
   report_pixel_shape(*picture.facts, plan.file->path(), diagnostics);
+  report_overscan(picture, plan.file->path(), diagnostics);
   ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
   if (!options.input_space.empty()) {
     AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));
     use_input_space(*space, encoding);
+    facts->primaries.reset();
+    if (space->linear() && encoding.matrix) facts->primaries = space->primaries;
   }
   encoding.data = options.raw;
 
   AFTERGLOW_TRY(const bool done, read_halves(plan, encoding, options, picture));
   if (done) {
+    report_gamut(picture, encoding, plan.file->path(), diagnostics);
     report(picture, policy, plan.file->path(), diagnostics);
     return picture;
   }
@@ -282,7 +308,10 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     const NonFinite in_layer = find_non_finite(image);
     if (in_layer.count() > 0 && policy == NanPolicy::neighbour) repair_from_neighbours(image);
     note_layer(picture, extra.name, in_layer, window);
-    if (extra.kind == &kMotion) image = motion_of(image);
+    if (extra.kind == &kMotion) {
+      image = motion_of(image);
+      turn_vectors(image, from.orientation);
+    }
     const float nothing = extra.kind ? extra.kind->background : 0.0f;
     image = placed(std::move(image), window, picture.data_window, {nothing, nothing, nothing, nothing});
     if (extra.kind == &kDepth) sanitize_depth(image, picture.sanitized);
@@ -362,7 +391,7 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     AFTERGLOW_TRY(const auto opened, open_with(file, options, of_header(options)));
     header.opened = opened;
     const ReadPlan& plan = opened->plan;
-    header.data_window = upright_frame(plan.color_part());
+    header.data_window = upright_frame(plan);
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
     for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.name);

@@ -98,7 +98,20 @@ struct Place {
 
 Error bad_pattern(const std::string& text, const std::string& why) {
   return Error{ErrorKind::usage, fmt::format("'{}' {}", text, why), "", 0,
-               "one run of #, or one %d or %04d, in the file name"};
+               "one run of #, or one %d or %04d, in the file name; %% is a percent sign"};
+}
+
+/// Folders have no place for a number; of one that is not there %% is %.
+std::string folder_of_pattern(std::string text) {
+  std::error_code ignored;
+  if (text.empty() || fs::exists(text, ignored)) return text;
+  for (std::size_t at = 0; (at = text.find("%%", at)) != std::string::npos; ++at) text.erase(at, 1);
+  return text;
+}
+
+bool looks_like_place(const std::string& folder) {
+  return folder.find('#') != std::string::npos || folder.find("%0") != std::string::npos ||
+         folder.find("%d") != std::string::npos;
 }
 
 }  // namespace
@@ -166,9 +179,11 @@ Result<Pattern> parse_pattern(const std::string& text) {
   if (text.empty()) return Error{ErrorKind::usage, "an empty file name"};
   std::error_code ignored;
   if (fs::exists(text, ignored)) return Pattern{text, "", 0, false};  // a name that merely looks like a pattern
+  const std::size_t name = text.rfind('/') + 1;
+  const std::string folder = folder_of_pattern(text.substr(0, name));
   std::vector<Place> places;
-  std::string plain;  // `text` with %% made %
-  for (std::size_t i = 0; i < text.size();) {
+  std::string plain = folder;  // `text` with %% made %
+  for (std::size_t i = name; i < text.size();) {
     if (text[i] == '#') {
       const std::size_t end = std::min(text.find_first_not_of('#', i), text.size());
       places.push_back({plain.size(), 0, static_cast<int>(end - i)});
@@ -176,7 +191,7 @@ Result<Pattern> parse_pattern(const std::string& text) {
     } else if (text[i] == '%' && i + 1 < text.size() && text[i + 1] == '%') {
       plain += '%';
       i += 2;
-    } else if (text[i] == '%') {
+    } else if (text[i] == '%' && i + 1 < text.size() && is_name_char(text[i + 1]) && text[i + 1] != '_') {
       std::size_t end = i + 1;
       while (end < text.size() && is_digit(text[end])) ++end;
       if (end >= text.size() || text[end] != 'd' || end - i > 3 || (end > i + 1 && text[i + 1] != '0'))
@@ -187,14 +202,13 @@ Result<Pattern> parse_pattern(const std::string& text) {
       plain += text[i++];
     }
   }
+  if (places.empty() && looks_like_place(folder) && !fs::exists(folder, ignored))
+    return bad_pattern(text, "has the place for the frame number in a folder's name");
   if (places.empty()) return Pattern{plain, "", 0, false};
   if (places.size() > 1) return bad_pattern(text, "has more than one place for the frame number");
   const Place place = places.front();
   if (place.digits > kMaxDigits) return bad_pattern(text, fmt::format("asks for more than {} digits", kMaxDigits));
-  const Pattern pattern{plain.substr(0, place.begin), plain.substr(place.begin), std::max(place.digits, 1), true};
-  if (pattern.suffix.find('/') != std::string::npos)
-    return bad_pattern(text, "has the place for the frame number in a folder's name");
-  return pattern;
+  return Pattern{plain.substr(0, place.begin), plain.substr(place.begin), std::max(place.digits, 1), true};
 }
 
 Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames,

@@ -54,7 +54,7 @@ std::string with_percents(const std::string& text) {
 }
 
 std::string pattern_of(const fs::path& folder, const std::pair<std::string, std::string>& name, std::size_t digits) {
-  return with_percents((folder / name.first).string()) + std::string(digits, '#') + with_percents(name.second);
+  return (folder / with_percents(name.first)).string() + std::string(digits, '#') + with_percents(name.second);
 }
 
 bool is_there(const fs::path& file) {

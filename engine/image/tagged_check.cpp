@@ -94,6 +94,12 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
   return packed ? text_fault(key, inflated(rest)) : text_fault(key, rest);
 }
 
+std::vector<std::uint8_t> png_profile(std::ifstream& in, std::uint64_t at, std::uint64_t length) {
+  const Buffer chunk = bytes_at(in, at, std::min<std::uint64_t>(length, kMostMetadata));
+  const auto name = static_cast<std::size_t>(std::ranges::find(chunk, 0) - chunk.begin());
+  return inflated(Bytes(chunk).subspan(std::min(chunk.size(), name + 2)));  // behind the way it is packed
+}
+
 Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
   Buffer profile;
   for (std::uint64_t at = 12; at + 8 <= size;) {

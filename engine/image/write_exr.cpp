@@ -3,10 +3,12 @@
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
 
 #include "image/exr_line_writer.h"
+#include "image/exr_primaries.h"
 #include "image/exr_rows.h"
 #include "image/metadata.h"
 #include "image/output_metadata.h"
@@ -18,6 +20,7 @@ Result<void> write_exr(const Picture& picture, OutputFile& out, const std::strin
   Imf::Header header(exr_window(picture.display_window), exr_window(picture.data_window));
   header.channels() = Imf::ChannelList();
   if (picture.facts) add_kept_attributes(header, *picture.facts);
+  if (options.space) Imf::addChromaticities(header, exr_chromaticities(options.space->primaries()));
   AFTERGLOW_CHECK(set_compression(header, options.compression));
   ExrColorRows rows(picture, {"R", "G", "B", picture.has_alpha ? "A" : ""},
                     sample_type(*format, options, picture.facts.get()));
@@ -38,7 +41,7 @@ Result<void> write_exr(const Picture& picture, OutputFile& out, const std::strin
       file.writePixels(count);
     }
   }  // the destructor writes the offset table; a failure of that is found in `out`
-  rows.warn_of_overflow(diagnostics);
+  rows.warn_of_overflow(header, diagnostics);
   return {};
 }
 

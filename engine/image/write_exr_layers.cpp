@@ -25,6 +25,7 @@
 #include "core/text.h"
 #include "image/exr_kept_channels.h"
 #include "image/exr_line_writer.h"
+#include "image/exr_primaries.h"
 #include "image/exr_rows.h"
 #include "image/metadata.h"
 #include "image/write_exr.h"
@@ -89,7 +90,7 @@ Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const I
   others.add_channels(header);
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
-  if (facts.had_chromaticities) Imf::addChromaticities(header, Imf::Chromaticities());
+  if (facts.had_chromaticities) Imf::addChromaticities(header, exr_chromaticities(facts.primaries.value_or(kRec709)));
   return header;
 }
 
@@ -201,7 +202,7 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
       }
     }
   }
-  color.warn_of_overflow(diagnostics);
+  color.warn_of_overflow(headers[static_cast<std::size_t>(facts->part)], diagnostics);
   return {};
 }
 

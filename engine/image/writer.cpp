@@ -18,6 +18,7 @@
 #include "core/text.h"
 #include "image/encode.h"
 #include "image/exr_file.h"
+#include "image/exr_primaries.h"
 #include "image/lost_file.h"
 #include "image/oiio_module.h"
 #include "image/output_file.h"
@@ -52,8 +53,10 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
       return module->write(picture, format, out, name, options);
   }
   use_exr_threads();
-  if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
-  return write_exr(picture, out, name, options, diagnostics);
+  const auto write = options.keep_layers ? write_exr_with_layers : write_exr;
+  if (const auto primaries = written_primaries(picture, options))
+    return write(in_primaries(picture, *primaries), out, name, options, diagnostics);
+  return write(picture, out, name, options, diagnostics);
 }
 
 /// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what
@@ -127,6 +130,8 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
 std::uint64_t write_bytes(const fs::path& file, const WriteOptions& options, Size size, bool has_alpha,
                           const FileFacts* facts) {
   const auto format = output_format(file, options);
+  if (format && (*format)->kind == OutputKind::exr && (options.space || options.keep_layers))
+    return static_cast<std::uint64_t>(size.area()) * 4 * sizeof(float);  // see in_primaries
   if (!format || (*format)->kind != OutputKind::png) return 0;
   constexpr std::uint64_t kCopies = 2;  // filtered, and packed
   const std::uint64_t sample = sample_type(**format, options, facts) == SampleType::uint8 ? 1 : 2;

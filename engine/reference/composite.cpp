@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "reference/color.h"
 #include "reference/settings.h"
@@ -129,6 +132,33 @@ PixelMask id_mask(const Settings& s, const Inputs& inputs) {
   };
 }
 
+/// The mask of whole pixels under a Gaussian, cut at three standard deviations; pixels beyond the border being those at
+/// it.
+PixelMask feathered(const PixelMask& mask, const Settings& s, Size size) {
+  const double deviation = s.number("feather");
+  if (deviation < 0.1) return mask;
+  const int reach = static_cast<int>(std::ceil(3 * deviation));
+  std::vector<double> weights;
+  for (int i = -reach; i <= reach; ++i) weights.push_back(std::exp(-0.5 * i * i / (deviation * deviation)));
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const auto blurred = [&](const auto& value) {  // along one axis
+    auto out = std::make_shared<std::vector<double>>(static_cast<std::size_t>(size.area()));
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        for (int i = -reach; i <= reach; ++i)
+          (*out)[static_cast<std::size_t>(y) * size.width + x] +=
+              weights[static_cast<std::size_t>(i + reach)] / sum * value(x, y, i);
+    return out;
+  };
+  const auto across =
+      blurred([&](int x, int y, int i) { return mask(std::clamp(x + i, 0, size.width - 1), y, Rgb(0)); });
+  const auto both = blurred([&](int x, int y, int i) {
+    return (*across)[static_cast<std::size_t>(std::clamp(y + i, 0, size.height - 1)) * size.width + x];
+  });
+  return
+      [both, width = size.width](int x, int y, const Rgb&) { return (*both)[static_cast<std::size_t>(y) * width + x]; };
+}
+
 PixelMask pixel_mask(const Mask& mask, const Inputs& inputs, Size size) {
   const Entry entry{.effect = mask.name, .settings = mask.settings};
   const Settings s(entry);
@@ -138,8 +168,7 @@ PixelMask pixel_mask(const Mask& mask, const Inputs& inputs, Size size) {
   if (mask.name == "hue") return hue_mask(s);
   if (mask.name == "radial") return radial_mask(s, size);
   if (mask.name == "linear") return linear_mask(s, size);
-  if (mask.name == "id") return id_mask(s, inputs);
-  return layer_mask(s, inputs);
+  return feathered(mask.name == "id" ? id_mask(s, inputs) : layer_mask(s, inputs), s, size);
 }
 
 }  // namespace

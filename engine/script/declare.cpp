@@ -260,7 +260,7 @@ int declare_effect(lua_State* lua) {
               false);
   Effect effect;
   EffectSchema& schema = effect.schema;
-  schema.name = table.text("name", 65).value_or("");
+  schema.name = table.text("name").value_or("");
   if (!is_identifier(schema.name) && !table.failed())
     table.fail(failure("fx.effect needs a name", {"name"}, "letters, digits and '_'"));
   const bool is_mask = Runtime::of(lua).loading.contains("masks." + schema.name);  // which is fx.mask.NAME

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct Dependencies {
   /// was found for it. Such names are looked up along the search path; kOcioVariable: in the environment; empty: a
   /// configuration or the command line names the file itself.
   std::map<std::filesystem::path, std::string> files;
+  /// Beside the frame's picture, whose header names them; there or not.
+  std::set<std::filesystem::path> beside;
   /// Variables of the environment that say what a configuration means; empty: not set.
   std::map<std::string, std::string> environment;
   /// Shaders that were made and their tables, by the request: "config.ocio, from lin, display sRGB".
@@ -26,6 +29,7 @@ struct Dependencies {
 
   void add(const Dependencies& more) {
     for (const auto& [file, name] : more.files) files.emplace(file, name);
+    beside.insert(more.beside.begin(), more.beside.end());
     for (const auto& [name, value] : more.environment) environment.emplace(name, value);
     for (const auto& [name, hash] : more.generated) generated.emplace(name, hash);
     objects.insert(objects.end(), more.objects.begin(), more.objects.end());

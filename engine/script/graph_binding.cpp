@@ -284,8 +284,10 @@ std::map<std::string, std::uint32_t> manifest_beside(lua_State* lua, const std::
   const std::filesystem::path folder = picture.has_parent_path() ? picture.parent_path() : ".";
   const std::filesystem::path file = folder / cryptomatte.manifest_file;
   if (!is_safe_entry(cryptomatte.manifest_file, 8) || !lies_in(file, folder)) return warn("lies outside of its folder");
-  if (!is_file(file)) return warn("is not there");
-  const auto text = read_file(file, kMost);
+  Runtime::of(lua).depends.beside.insert(file);
+  FileRecord* record = Runtime::of(lua).path.record.get();
+  if (!is_file(file, record)) return warn("is not there");
+  const auto text = read_file(file, kMost, record);
   if (!text) return warn("cannot be read");
   auto manifest = read_manifest(*text, cryptomatte.layer);
   if (!manifest) throw failure(manifest.error().message);

@@ -49,7 +49,6 @@ namespace script {
 namespace {
 
 constexpr double kMaxInteger = 2147483647;
-constexpr std::size_t kMaxText = 1000;
 
 bool in_range(const SettingSchema& schema, double value) {
   return (!schema.min || value >= *schema.min) && (!schema.max || value <= *schema.max);
@@ -125,7 +124,7 @@ std::string allowed_text(const SettingSchema& schema) {
       return "\"\" for none, the name of a file beside the preset or on the search path: ." +
              join(schema.choices, ", .");
     case SettingType::text:
-      return fmt::format("a text of at most {} bytes", kMaxText);
+      return fmt::format("a text of at most {} bytes", kLongestText);
   }
   return {};
 }
@@ -166,7 +165,7 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
       return fail("not a choice", nearest_name(given.text, schema.choices));
     case SettingType::text:
       if (given.kind != Kind::text) return fail("not a text");
-      if (given.text.size() > kMaxText) return fail("too long");
+      if (given.text.size() > kLongestText) return fail("too long");
       value.choice = given.text;
       return value;
     case SettingType::file:

@@ -117,8 +117,10 @@ std::optional<std::string> TableReader::text(const char* name, std::size_t limit
     fail(failure(fmt::format("{}: {} = {} is not a text", what_, name, given.shown()), {name}));
     return {};
   }
-  if (given.text.size() > limit) given.text.resize(limit);
-  return std::move(given.text);
+  if (given.text.size() <= limit) return std::move(given.text);
+  fail(failure(fmt::format("{}: {} is too long", what_, name), {name},
+               fmt::format("a text of at most {} bytes", limit)));
+  return {};
 }
 
 std::optional<double> TableReader::number(const char* name) {

@@ -34,8 +34,8 @@ class TableReader {
   /// The value of a name; kind `nothing` when there is none.
   Value value(const char* name) const;
 
-  /// Text, number, … of a name; a failure is noted when it has another type. Empty when absent.
-  std::optional<std::string> text(const char* name, std::size_t limit = 1000);
+  /// Text, number, … of a name; a failure is noted when it has another type, or a text more bytes. Empty when absent.
+  std::optional<std::string> text(const char* name, std::size_t limit = kLongestText);
   std::optional<double> number(const char* name);
   std::optional<int> integer(const char* name);
   std::optional<bool> boolean(const char* name);

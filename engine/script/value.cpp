@@ -76,7 +76,7 @@ Value read_value(lua_State* lua, int index) {
       value.kind = Value::Kind::text;
       std::size_t size = 0;
       const char* text = lua_tolstring(lua, index, &size);
-      value.text.assign(text, std::min<std::size_t>(size, 1000));
+      value.text.assign(text, std::min(size, kLongestText + 1));
       return value;
     }
     default:

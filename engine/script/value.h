@@ -3,11 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include "script/lua.h"
 
 namespace afterglow::script {
+
+/// Bytes of the longest text that anything takes. Of a longer one its beginning is read, one byte more than this, so
+/// that whoever takes it can tell.
+inline constexpr std::size_t kLongestText = 4096;
 
 struct Value {
   enum class Kind { nothing, boolean, number, text, list, other };

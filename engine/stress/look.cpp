@@ -42,6 +42,28 @@ std::vector<std::string> items(const std::vector<LookEntry>& entries, std::size_
   return out;
 }
 
+/// As a preset writes it.
+std::string mask_text(const EntryMask& mask) {
+  using Kind = EntryMask::Kind;
+  if (mask.kind == Kind::number) return number_text(mask.number);
+  if (mask.kind != Kind::named) {
+    const char* sign = mask.kind == Kind::add ? "+" : mask.kind == Kind::subtract ? "-" : "*";
+    return fmt::format("({} {} {})", mask_text(*mask.a), sign, mask_text(*mask.b));
+  }
+  std::vector<std::string> keys;
+  for (const auto& [name, value] : mask.settings) keys.push_back(fmt::format("{} = {}", name, value.text()));
+  return fmt::format("fx.mask.{} {{ {} }}", mask.name, join(keys));
+}
+
+/// How an entry is put over what it was given, where that is not the plain way.
+std::vector<std::pair<std::string, std::string>> composition_of(const StackEntry& entry) {
+  std::vector<std::pair<std::string, std::string>> out;
+  if (entry.opacity != 1) out.emplace_back("opacity", number_text(entry.opacity));
+  if (entry.blend != "normal") out.emplace_back("blend", "\"" + entry.blend + "\"");
+  if (entry.mask) out.emplace_back("mask", mask_text(*entry.mask));
+  return out;
+}
+
 }  // namespace
 
 const SettingValue* LookEntry::find(const std::string& setting) const {
@@ -82,12 +104,25 @@ Result<Look> look_of_preset(const std::filesystem::path& preset, const PresetOpt
   AFTERGLOW_TRY(const Build build, loaded.evaluate(context, diagnostics));
   Look look;
   look.paths = loaded.path().user;
-  for (const auto& entry : *build.entries) {
-    if (!entry.enabled) continue;
+  const auto warn = [&](const std::string& what) { diagnostics.warn(fmt::format("{}: {}", preset.string(), what)); };
+  if (loaded.may_change()) warn("settings that move are tried as they are in the first frame");
+  for (std::size_t i = 0; i < build.entries->size(); ++i) {
+    const StackEntry& entry = (*build.entries)[i];
+    if (!entry.enabled) {
+      i += static_cast<std::size_t>(entry.members);
+      continue;
+    }
     LookEntry one{.effect = entry.effect, .settings = {}, .at = entry.at, .order = entry.order};
-    const auto& schema = loaded.schema(entry.effect);
-    for (std::size_t i = 0; i < entry.settings.size(); ++i)
-      if (!(entry.settings[i].second == schema.settings[i].default_value)) one.settings.push_back(entry.settings[i]);
+    one.composition = composition_of(entry);
+    one.depth = entry.depth;
+    if (entry.middle > 0) {
+      warn(fmt::format("'{}' is tried as a group: the effects of both looks, one behind the other", entry.name));
+      one.effect = kGroup;
+    } else {
+      const auto& schema = loaded.schema(entry.effect);
+      for (std::size_t k = 0; k < entry.settings.size(); ++k)
+        if (!(entry.settings[k].second == schema.settings[k].default_value)) one.settings.push_back(entry.settings[k]);
+    }
     look.entries.push_back(std::move(one));
   }
   return look;

@@ -42,8 +42,9 @@ struct Look {
   std::string line() const;
 };
 
-/// The entries of a preset that are enabled, in their order, with the settings that they have in the first frame of a
-/// picture of this size. Errors: script.
+/// The entries of a preset that are enabled, in their order, with the settings, opacities, blend modes, masks and
+/// groups that they have in the first frame of a picture of this size. Warns of what is tried otherwise than the preset
+/// has it (settings that move, mixes). Errors: script.
 Result<Look> look_of_preset(const std::filesystem::path& preset, const PresetOptions& options, Size size,
                             Diagnostics& diagnostics);
 

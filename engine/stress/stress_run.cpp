@@ -165,6 +165,9 @@ Result<Repeated> repeat_case(const std::filesystem::path& folder, const StressRe
   AFTERGLOW_TRY(const Situation situation, read_reproducer(folder, diagnostics));
   Diagnostics quiet;
   AFTERGLOW_TRY(const Opened opened, open(request, quiet));
+  // A look that cannot be made any more holds nothing.
+  const auto facts = opened.harness->facts(situation.look, situation.picture.color.size(), situation.frame);
+  if (!facts) return facts.error();
   AFTERGLOW_TRY(Outcome outcome, run_check(*opened.harness, situation));
   return Repeated{situation.check, std::move(outcome)};
 }

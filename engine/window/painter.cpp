@@ -136,7 +136,7 @@ Result<void> Painter::record_check(VkCommandBuffer commands, const PresentTarget
 
 Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
                                         std::span<const Rect> written) {
-  const bool capture = !capture_.empty() && code_order(swapchain_->format()).has_value();
+  const bool capture = !capture_.empty();
   Result<void> recorded;
   Buffer pixels;
   Size size;
@@ -151,7 +151,7 @@ Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> 
     recorded = record(commands, target, views, interface, written);
     checked = recorded && check_ && target.kept && keeps_ && swapchain_->readable();
     if (checked) recorded = record_check(commands, target, views, interface);
-    if (!recorded || !capture || !swapchain_->readable()) return;
+    if (!recorded || !capture || !swapchain_->readable() || !code_order(swapchain_->format())) return;
     auto buffer = Buffer::create(device_, static_cast<VkDeviceSize>(target.size.area()) * 4,
                                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "capture");
     if (!buffer) {
@@ -168,11 +168,13 @@ Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> 
     AFTERGLOW_CHECK(check_->compare());
   }
   if (drawn == Swapchain::Drawn::yes) on_screen_ = tiles_.numbers();
-  if (size.area() > 0) AFTERGLOW_CHECK(write_capture(pixels, size));
+  if (capture && drawn == Swapchain::Drawn::yes) captured_ = write_capture(pixels, size);
   return drawn;
 }
 
-Result<void> Painter::write_capture(const Buffer& pixels, Size size) {
+Result<std::filesystem::path> Painter::write_capture(const Buffer& pixels, Size size) {
+  const std::filesystem::path file = std::exchange(capture_, {});
+  if (size.area() == 0) return Error{ErrorKind::device, "the images of this window cannot be read", file.string()};
   AFTERGLOW_CHECK(swapchain_->finish());
   pixels.memory().invalidate();
   const auto order = *code_order(swapchain_->format());
@@ -184,8 +186,8 @@ Result<void> Painter::write_capture(const Buffer& pixels, Size size) {
     for (std::size_t c = 0; c < 3; ++c) picture.unorm8[i + c] = static_cast<std::uint8_t>(pixels.data()[i + order[c]]);
   }
   Diagnostics nowhere;
-  const std::filesystem::path file = std::exchange(capture_, {});
-  return write_picture(picture, file, {.type = SampleType::uint8}, nowhere);
+  AFTERGLOW_CHECK(write_picture(picture, file, {.type = SampleType::uint8}, nowhere));
+  return file;
 }
 
 }  // namespace afterglow

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "gpu/swapchain.h"
@@ -39,6 +40,8 @@ class Painter {
   void expose() { on_screen_.clear(); }
   /// The next frame that is painted goes to this file too (PNG, or what else the writer knows).
   void capture(const std::filesystem::path& file) { capture_ = file; }
+  /// What has come of it, once: the file. Errors: io, device (the window's images cannot be read).
+  std::optional<Result<std::filesystem::path>> take_captured() { return std::exchange(captured_, std::nullopt); }
 
   const Swapchain& swapchain() const { return *swapchain_; }
 
@@ -51,12 +54,13 @@ class Painter {
                             const ImDrawData& interface, std::span<const Rect> only);
   Result<void> record_check(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                             const ImDrawData& interface);
-  Result<void> write_capture(const Buffer& pixels, Size size);
+  Result<std::filesystem::path> write_capture(const Buffer& pixels, Size size);
 
   Device& device_;
   std::unique_ptr<ViewPass> view_pass_;
   std::unique_ptr<UiRenderer> ui_;
   std::filesystem::path capture_;
+  std::optional<Result<std::filesystem::path>> captured_;
   const bool keeps_;   ///< drivers on the CPU: there a pixel costs more than finding out that it need not be drawn
   WindowTiles tiles_;  ///< of the frame that is painted
   Size looked_;        ///< size of the frame that `tiles_` are of; empty: of none yet

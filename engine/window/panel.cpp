@@ -66,6 +66,7 @@ void Panel::turn(Ui& ui, PanelPort& port) {
     save_waits_ = false;
     save_.save(port, bases_);
   }
+  if (copy_due_ && !save_.busy()) save_.save_as(port, *std::exchange(copy_due_, std::nullopt));
   if (const std::string shown = stack_.take_shown(); !shown.empty()) {
     chosen_ = shown;
     scroll_to_chosen_ = true;
@@ -91,16 +92,16 @@ void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
     draw_outcome(ui, port);
   }
   ImGui::End();
-  draw_windows(ui, port);
+  draw_windows(ui);
 }
 
-void Panel::draw_windows(Ui& ui, PanelPort& port) {
+void Panel::draw_windows(Ui& ui) {
   const ImVec2 area = ImGui::GetIO().DisplaySize;
   const ImVec2 size{std::min(ui.px(660), area.x * 0.95f), std::min(ui.px(480), area.y * 0.9f)};
   const auto effect = browser_.draw(ui, library_, {(area.x - size.x) / 2, (area.y - size.y) / 2}, size);
   if (effect) stack_.begin({StackEdit::Kind::add, *effect});
-  if (const auto name = save_as_.draw(ui, area)) save_.save_as(port, copy_of(save_.file(), *name));
-  if (stack_.busy() || save_.busy()) ui.again();  // the next turn takes it on
+  if (const auto name = save_as_.draw(ui, area)) copy_due_ = copy_of(save_.file(), *name);
+  if (stack_.busy() || save_.busy() || copy_due_) ui.again();  // the next turn takes it on
 }
 
 void Panel::save_as() {

@@ -52,7 +52,7 @@ class Panel {
   /// What has been changed and is not in the file: "2 settings of look.lua". Empty: nothing.
   std::string unsaved(PanelPort& port) const;
   const PanelSave& saving() const { return save_; }
-  bool busy() const { return save_.busy() || save_waits_; }
+  bool busy() const { return save_.busy() || save_waits_ || copy_due_.has_value(); }
   bool asks_for_name() const { return save_as_.is_open(); }
   const PanelStack& stack() const { return stack_; }
 
@@ -62,7 +62,7 @@ class Panel {
   void draw_conflict(const Ui& ui, PanelPort& port);
   void draw_choice(const Ui& ui, PanelPort& port);
   std::string conflict_text() const;
-  void draw_windows(Ui& ui, PanelPort& port);
+  void draw_windows(Ui& ui);
   void draw_settings(Ui& ui, PanelPort& port);
   void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
@@ -84,7 +84,8 @@ class Panel {
   EffectBrowser browser_;
   std::function<EffectBrowser::Source()> pictures_ = [] { return EffectBrowser::Source(); };
   NameDialog save_as_;
-  bool save_waits_ = false;  ///< for changes of the stack
+  bool save_waits_ = false;                        ///< for changes of the stack
+  std::optional<std::filesystem::path> copy_due_;  ///< where "Save as" is to write when no save runs
   bool conflict_told_ = false;
   StackText text_;      ///< that the bases are of
   std::string chosen_;  ///< the entry that keys are about

@@ -126,6 +126,7 @@ void PanelSave::save_as(PanelPort& port, const std::filesystem::path& to) {
   for (const SettingEdit& edit : port.edits().edits())
     if (!edit.entry.empty()) edits.push_back({edit.entry, edit.setting, edit.value, ""});
   const auto working = stack_.working(port);
+  copied_ = {port.edits().edits(), port.edits().stack_text()};
   running_ = std::async(std::launch::async, [this, edits, working, to] { return write_copy(edits, working, to); });
 }
 
@@ -163,8 +164,10 @@ bool PanelSave::poll(PanelPort& port, EditBases& bases) {
   if (outcome.error) {
     tell(outcome.error->text(), true);
   } else if (outcome.copy) {
-    tell("saved as " + outcome.copy->string(), false);
-    copy_ = outcome.copy;
+    const bool newer = copied_ != Edited{port.edits().edits(), port.edits().stack_text()};
+    const std::string file = outcome.copy->string();
+    tell(newer ? fmt::format("saved as {}; what was changed since is not in it", file) : "saved as " + file, false);
+    if (!newer) copy_ = outcome.copy;  // opening it forgets all edits
   } else {
     take_saved(port, bases, std::move(outcome.rewrite));
   }

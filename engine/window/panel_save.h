@@ -30,9 +30,9 @@ class PanelSave {
   /// runs, or while stack and file disagree.
   void save(PanelPort& port, const EditBases& bases);
   /// Writes the preset as it is on screen to another file, whole or not at all; its own stays as it is. Errors, also
-  /// where a value cannot be written, are told by `poll`.
+  /// where a value cannot be written, are told by `poll`. Nothing happens while another save runs.
   void save_as(PanelPort& port, const std::filesystem::path& to);
-  /// The file that `save_as` has written; once.
+  /// The file that `save_as` has written, if it holds all that is on screen; once.
   std::optional<std::filesystem::path> take_copy() { return std::exchange(copy_, std::nullopt); }
   /// The file as it was before the last save; what was written then stands over it as edits again.
   void undo(PanelPort& port, EditBases& bases);
@@ -76,6 +76,12 @@ class PanelSave {
   PanelStack& stack_;
   StackText saving_stack_;  // what the running save writes; null: the stack is the file's
   std::optional<std::filesystem::path> copy_;
+  struct Edited {
+    std::vector<SettingEdit> edits;
+    StackText text;
+    bool operator==(const Edited&) const = default;
+  };
+  Edited copied_;  ///< what the copy that is written holds
   struct SavedText {
     std::string before, after;
     bool stack = false;  // a changed one went into it

@@ -15,23 +15,31 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-/// Numbers of the range's frames that are there.
-std::vector<int> frames_of(Player& player) {
+/// What of a clip lies in the range: numbers of frames that are there.
+struct ClipRange {
+  std::size_t clip = 0;
+  std::vector<int> numbers;
+};
+
+/// In the order of the row; clips without such a frame are left out.
+std::vector<ClipRange> range_of(Player& player) {
   const Transport& t = player.transport();
   const Footage& footage = player.footage();
-  std::set<int> numbers;
-  for (int at = t.first(); at <= std::min(t.last(), footage.frames() - 1); ++at)
-    if (!footage.frame(at).held) numbers.insert(footage.frame(at).number);
-  return {numbers.begin(), numbers.end()};
+  std::vector<ClipRange> out;
+  for (std::size_t i = 0; i < footage.clips().size(); ++i) {
+    const Footage::Clip& clip = footage.clips()[i];
+    std::set<int> numbers;  // a frame of a video may have several turns
+    for (int at = std::max(t.first(), clip.first); at <= std::min(t.last(), clip.first + clip.frames - 1); ++at)
+      if (!footage.frame(at).held) numbers.insert(footage.frame(at).number);
+    if (!numbers.empty()) out.push_back({i, {numbers.begin(), numbers.end()}});
+  }
+  return out;
 }
 
-/// The clip that the whole range lies in; none: it has frames of several, or clips are no inputs.
-std::optional<std::size_t> clip_of_range(Player& player) {
-  const Transport& t = player.transport();
-  const Footage& footage = player.footage();
-  const int first = footage.clip_at(t.first()), last = footage.clip_at(std::min(t.last(), footage.frames() - 1));
-  if (first != last || footage.clips().size() != player.footage_options().inputs.size()) return std::nullopt;
-  return static_cast<std::size_t>(first);
+std::size_t frames_in(const std::vector<ClipRange>& range) {
+  std::size_t count = 0;
+  for (const ClipRange& clip : range) count += clip.numbers.size();
+  return count;
 }
 
 /// Of the range.
@@ -93,29 +101,34 @@ std::string RangeExport::proposed(Player& player) const {
 }
 
 std::string RangeExport::range_text(Player& player) const {
-  const auto numbers = frames_of(player);
-  if (numbers.empty()) return "no frame of the range is there";
+  const auto range = range_of(player);
+  if (range.empty()) return "no frame of the range is there";
+  if (range.size() > 1) return fmt::format("{} frames of {} clips", frames_in(range), range.size());
+  const std::vector<int>& numbers = range.front().numbers;
   if (numbers.size() == 1) return fmt::format("frame {}", numbers[0]);
   return fmt::format("frames {}–{} ({})", numbers.front(), numbers.back(), numbers.size());
 }
 
 std::optional<fs::path> RangeExport::in_the_way(Player& player, const std::string& output) const {
   const auto pattern = parse_pattern(output);
+  if (!pattern) return {};
+  const Transport& t = player.transport();
+  const Footage& footage = player.footage();
   std::error_code none;
-  if (!pattern || fs::is_directory(output, none)) return {};
-  for (const int number : frames_of(player))
-    if (const fs::path file = pattern->file(number); fs::exists(file, none)) return file;
+  const bool folder = fs::is_directory(output, none);
+  for (int at = t.first(); at <= std::min(t.last(), footage.frames() - 1); ++at) {
+    const FootageFrame& frame = footage.frame(at);
+    const fs::path file =
+        folder ? fs::path(output) / footage.file(frame.picture).filename() : pattern->file(frame.number);
+    if (!frame.held && fs::exists(file, none)) return file;
+  }
   return {};
 }
 
 Result<BatchRequest> RangeExport::request(Player& player, const std::string& output) const {
   const FootageOptions& footage = player.footage_options();
-  const auto numbers = frames_of(player);
-  if (numbers.empty()) return Error{ErrorKind::usage, "no frame of the range is there"};
-  const auto& clips = player.footage().clips();
-  const auto clip = clip_of_range(player);
-  if (footage.inputs.size() > 1 && !clip && player.footage().frames() > static_cast<int>(numbers.size()))
-    return Error{ErrorKind::usage, "the range has frames of several clips: choose those of one with I and O"};
+  const auto range = range_of(player);
+  if (range.empty()) return Error{ErrorKind::usage, "no frame of the range is there"};
   BatchRequest out;
   out.preset = setup_.preset;
   out.session.device = setup_.device;
@@ -131,17 +144,20 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   preset.overrides = player.live().overrides();
   preset.arguments = player.edits().arguments(preset.arguments);
   preset.leave_out_unfit = true;
-  const bool one = clip && clips.size() > 1;
-  out.files.inputs = one ? std::vector<std::string>{footage.inputs[*clip]} : footage.inputs;
+  for (const auto& [at, numbers] : range) {
+    const Footage::Clip& clip = player.footage().clips()[at];
+    const bool movie = player.footage().movie(player.footage().frame(clip.first).picture) != nullptr;
+    out.files.inputs.push_back(footage.inputs[at]);
+    out.files.frames_of.push_back(clip.frames > 1 || movie ? list_text(numbers) : "");
+  }
   out.files.output = output;
-  const int frames = one ? clips[*clip].frames : player.footage().frames();
-  if (frames > 1 || player.footage().movie(first_picture(player))) out.files.frames = list_text(numbers);
   out.files.depth = footage.read.depth;
   out.files.normal = footage.read.normal;
   out.files.motion = footage.read.motion;
   out.loop.max_memory = out.session.stack.max_memory;
   out.input_space = footage.read.input_space;
   out.loop.read.layer = footage.read.layer;
+  out.loop.read.cut_overscan = footage.read.cut_overscan;
   out.loop.read.max_bytes = footage.read.max_bytes;
   out.loop.fps = player.transport().fps();
   out.files.limits = {out.loop.read.max_side, out.loop.read.max_bytes};
@@ -161,7 +177,7 @@ void RangeExport::begin(Player& player, Ui& ui, const std::string& output) {
   output_ = output;
   cancelled_ = false;
   done_ = 0;
-  total_ = frames_of(player).size();
+  total_ = frames_in(range_of(player));
   running_ = std::async(std::launch::async, [this, request = std::move(*wanted)] { return run(request); });
   ui.say("exporting " + range_text(player) + " to " + output);
   ui.again();

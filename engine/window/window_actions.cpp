@@ -311,13 +311,9 @@ bool WindowApp::act_on_window(Action action) {
     case Action::full_screen:
       window_.set_full_screen(!window_.full_screen());
       return true;
-    case Action::screenshot: {
-      const auto file = capture_name(options_.captures);
-      painter_->capture(file);
-      ui.say("written: " + file.string());
-      diagnostics_.note("window written to " + file.string());
+    case Action::screenshot:
+      painter_->capture(capture_name(options_.captures));
       return true;
-    }
     case Action::export_frame:
       if (player_.proxy() > 1) (void)painter_->finish();  // the whole picture runs in its place
       if (options_.export_frame) options_.export_frame(player_, ui);

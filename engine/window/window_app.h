@@ -57,6 +57,7 @@ class WindowApp {
   // A frame.
   Result<void> follow_scale();
   void draw_parts(Size window);
+  void tell_captured();
   Result<void> draw_overlays();
   Result<void> look_under_cursor();
   Result<void> look_at_scopes();
@@ -116,7 +117,8 @@ class WindowApp {
   int redraw_ = 3;   ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
   std::uint64_t tidied_ = 0;  ///< swapchains that were made when memory was given back last
-  enum class Quitting { no, asked, saving } quitting_ = Quitting::no;
+  // waiting: for a save that was under way when the wish to leave came; saving: for the one that was the answer.
+  enum class Quitting { no, asked, saving, waiting } quitting_ = Quitting::no;
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented
   std::uint64_t noted_generation_ = 0;

@@ -67,6 +67,7 @@ Result<void> WindowApp::draw() {
   if (drawn == Swapchain::Drawn::yes) atlas_parts_.clear();
   last_draw_ = player_.now();
   if (drawn == Swapchain::Drawn::yes && redraw_ > 0) --redraw_;
+  tell_captured();
   input_seen();
   if (drawn != Swapchain::Drawn::yes) {
     last_draw_ += kRetry;
@@ -86,6 +87,15 @@ Result<void> WindowApp::draw() {
     }
   }
   return {};
+}
+
+/// Where the window's picture went, or why it went nowhere.
+void WindowApp::tell_captured() {
+  const auto captured = painter_->take_captured();
+  if (!captured) return;
+  interface_->ui().say(*captured ? "written: " + (*captured)->string() : captured->error().text());
+  diagnostics_.note(*captured ? "window written to " + (*captured)->string() : captured->error().text());
+  redraw_ = kSettle;
 }
 
 /// A frame around the part that has the keyboard.

@@ -128,7 +128,7 @@ void WindowApp::ask_to_quit(const std::filesystem::path& to_open_then) {
   if (quitting_ != Quitting::no) return;
   to_open_then_ = to_open_then;
   if (options_.saving && options_.saving() == WindowOptions::Saving::busy) {
-    quitting_ = Quitting::saving;  // what is being written is no loss
+    quitting_ = Quitting::waiting;  // what is being written is no loss
     return;
   }
   const bool unsaved = options_.unsaved && !options_.unsaved(player_, to_open_then.empty()).empty();
@@ -155,14 +155,17 @@ void WindowApp::answer_quit(QuitAnswer answer) {
   quitting_ = Quitting::saving;
 }
 
-/// A save that fails, or leaves something out, keeps the preset open: it says why.
+/// A save that fails, or leaves something out, keeps the preset open: it says why. What changed since one that was
+/// under way began is asked about.
 void WindowApp::quit_when_saved() {
-  if (quitting_ != Quitting::saving) return;
+  if (quitting_ != Quitting::saving && quitting_ != Quitting::waiting) return;
   const auto state = options_.saving ? options_.saving() : WindowOptions::Saving::done;
   redraw_ = std::max(redraw_, 1);
   if (state == WindowOptions::Saving::busy) return;
-  quitting_ = Quitting::no;
-  if (state == WindowOptions::Saving::done) leave();
+  const bool waited = std::exchange(quitting_, Quitting::no) == Quitting::waiting;
+  if (state != WindowOptions::Saving::done) return;
+  if (waited) return ask_to_quit(std::exchange(to_open_then_, {}));
+  leave();
 }
 
 /// The frame has seen what it was given. A field that gets the keyboard has it within a few frames: what is typed

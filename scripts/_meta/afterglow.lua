@@ -463,6 +463,7 @@
 
 ---Objects, materials or assets by name, with their soft edges, from the picture's cryptomatte.
 ---@class afterglow.masks.cryptomatte : afterglow.MaskKeys
+---@field feather? number|afterglow.Moving  Softens the mask: the standard deviation of a Gaussian over it. 0: as it is. 0…200 px, default 0
 ---@field names? string|afterglow.OfTime  Up to 8 names, with commas between them; a name that has commas itself stands in quotation marks. default ""
 ---@field layer? string|afterglow.OfTime  Of which cryptomatte: CryptoObject, CryptoMaterial, CryptoAsset of Blender. default "CryptoObject"
 
@@ -474,6 +475,7 @@
 
 ---A picture from a file, stretched over the whole picture.
 ---@class afterglow.masks.file : afterglow.MaskKeys
+---@field feather? number|afterglow.Moving  Softens the mask: the standard deviation of a Gaussian over it. 0: as it is. 0…200 px, default 0
 ---@field file? string|afterglow.OfTime  The picture. default ""
 ---@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  What of it is the mask. default "luma"
 ---@field raw? boolean|afterglow.OfTime  Its numbers count as they are: a painted grey of 50 % is half. Else they are colours, and that is 0.21 in linear light. default false
@@ -487,12 +489,14 @@
 
 ---What has a number in a pass of numbers: an object or a material by its pass index, an object ID.
 ---@class afterglow.masks.id : afterglow.MaskKeys
+---@field feather? number|afterglow.Moving  Softens the mask: the standard deviation of a Gaussian over it. 0: as it is. 0…200 px, default 0
 ---@field index? integer|afterglow.Moving  Which number. For several, add masks. integer 0…16777215, default 1
 ---@field layer? string|afterglow.OfTime  The pass: IndexOB (objects) or IndexMA (materials) of Blender, whatever the renderer calls it. default "IndexOB"
 ---@field antialias? boolean|afterglow.OfTime  Smooths the edges over 3 × 3 pixels; a pass of numbers has hard ones. default false
 
 ---A channel of a layer of the picture: a matte, an object's alpha, an albedo.
 ---@class afterglow.masks.layer : afterglow.MaskKeys
+---@field feather? number|afterglow.Moving  Softens the mask: the standard deviation of a Gaussian over it. 0: as it is. 0…200 px, default 0
 ---@field layer? string|afterglow.OfTime  The layer; the end of its name is enough where no other ends so. default ""
 ---@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  Which of its channels. Of a layer of one channel: r. default "r"
 

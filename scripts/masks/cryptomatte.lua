@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Objects and materials by name.
 local fx = require "afterglow"
+local feather = require "lib.feather"
 
 return fx.effect {
   name = "cryptomatte",
@@ -8,6 +9,7 @@ return fx.effect {
   settings = {
     names = fx.text { doc = "Up to 8 names, with commas between them; a name that has commas itself stands in quotation marks." },
     layer = fx.text { default = "CryptoObject", doc = "Of which cryptomatte: CryptoObject, CryptoMaterial, CryptoAsset of Blender." },
+    feather = feather.setting,
   },
   needs = function(s) return { "layer:" .. s.layer .. "00" } end,
   optional = function(s) return { "layer:" .. s.layer .. "01", "layer:" .. s.layer .. "02" } end,
@@ -27,6 +29,6 @@ return fx.effect {
         mask = g:pass { shader = "mask/cryptomatte", source = source, ranks = image, before = mask or source, first = mask == nil, ids_a = a, ids_b = b }
       end
     end
-    return mask
+    return feather.of(g, mask, s.feather)
   end,
 }

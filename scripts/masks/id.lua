@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Objects and materials by number.
 local fx = require "afterglow"
+local feather = require "lib.feather"
 
 local kTent = { { -1, 0.25 }, { 0, 0.5 }, { 1, 0.25 } }
 
@@ -11,12 +12,15 @@ return fx.effect {
     index = fx.int { min = 0, max = 16777215, default = 1, doc = "Which number. For several, add masks." },
     layer = fx.text { default = "IndexOB", doc = "The pass: IndexOB (objects) or IndexMA (materials) of Blender, whatever the renderer calls it." },
     antialias = fx.bool { default = false, doc = "Smooths the edges over 3 × 3 pixels; a pass of numbers has hard ones." },
+    feather = feather.setting,
   },
   needs = function(s) return s.layer ~= "" and { "layer:" .. s.layer } or {} end,
   active = function(s) return s.layer ~= "", "no layer is named", true end,
   build = function(g, s, source)
     local mask = g:pass { shader = "mask/id", source = source, layer = g:input("layer:" .. s.layer), index = s.index }
-    if not s.antialias then return mask end
-    return g:filter { source = mask, filter = { interpolation = "nearest", x = kTent, y = kTent }, channels = 1, name = "antialias" }
+    if s.antialias then
+      mask = g:filter { source = mask, filter = { interpolation = "nearest", x = kTent, y = kTent }, channels = 1, name = "antialias" }
+    end
+    return feather.of(g, mask, s.feather)
   end,
 }

@@ -97,5 +97,27 @@ TEST_F(BadInput, NeedAboveMaxMemoryIsRefusedFromTheHeader) {
 
 TEST_F(BadInput, SequenceWithoutFiles) { expect_refusal("shot.####.exr", "no file matches"); }
 
+/// One among several is a frame that fails; the others are made.
+TEST_F(BadInput, AVideoAmongPictures) {
+  make_exr("a.exr", 8, 8);
+  make_exr("z.exr", 8, 8);
+  write("broken.mp4", std::string("\0\0\0\x18"
+                                  "ftypisom\0\0\2\0isomiso2",
+                                  24));
+  fs::create_directory(path("out"));
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "broken.mp4", "z.exr", "-o", "out/"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("broken.mp4: error: "));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 frames failed"));
+  EXPECT_TRUE(fs::exists(path("out/a.exr")) && fs::exists(path("out/z.exr")));
+  EXPECT_FALSE(fs::exists(path("out/broken.mp4")));
+  // Stills are told by the brands that their files are compatible with: this one is no video, but damaged.
+  write("still.heic", std::string("\0\0\0\x18"
+                                  "ftypx\1\2\3\0\0\0\0mif1heic",
+                                  24));
+  expect_refusal("still.heic", "");
+  EXPECT_THAT(run({"run", "look.lua", "still.heic", "-o", "out.png"}).err, Not(HasSubstr("video")));
+}
+
 }  // namespace
 }  // namespace afterglow::test

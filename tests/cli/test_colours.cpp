@@ -111,6 +111,73 @@ TEST_F(Colours, OutsideRec709AreTold) {
   EXPECT_THAT(said, IsEmpty());
 }
 
+TEST_F(Colours, NegativeLightIsTold) {
+  for (const bool half : {true, false}) {
+    const OIIO::ImageSpec spec(64, 64, 3, half ? OIIO::TypeHalf : OIIO::TypeFloat);
+    std::string said;
+    ASSERT_NO_FATAL_FAILURE(make("a.exr", spec, {0.5f, -0.05f, 0.2f}));
+    read_as_light("a.exr", &said);
+    EXPECT_THAT(said, HasSubstr("a.exr: 4096 samples are below -0.01; light is not negative, they count as 0")) << half;
+    ASSERT_NO_FATAL_FAILURE(make("noise.exr", spec, {0.5f, -0.009f, 0.2f}));
+    read_as_light("noise.exr", &said);
+    EXPECT_THAT(said, IsEmpty());
+  }
+}
+
+TEST_F(Colours, ExrInOtherPrimaries) {
+  // (0.5, 0.2, 0.1) in primaries AP1, by the published matrix of Rec.709 to ACEScg.
+  const Pixel light{0.5f, 0.2f, 0.1f}, ap1{0.37924f, 0.21973f, 0.11919f};
+  constexpr float kAcescg[8] = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+  const auto says = [&](const std::string& file) {
+    const auto input = OIIO::ImageInput::open(text(file));
+    std::vector<float> said(8);
+    EXPECT_TRUE(input &&
+                input->spec().getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), said.data()));
+    return said;
+  };
+  const auto expect_acescg = [&](const std::string& file) {
+    const auto said = says(file);
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(said[i], kAcescg[i], 1e-6) << file << " " << i;
+  };
+  ASSERT_NO_FATAL_FAILURE(make("plain.exr", {8, 8, 3, OIIO::TypeFloat}, light));
+  for (const char* type : {"half", "float"}) {
+    const Outcome outcome =
+        run({"run", "look.lua", "plain.exr", "-o", "ap1.exr", "--output-space", "acescg", "--type", type});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    expect_acescg("ap1.exr");
+    const auto stored = pixels_of("ap1.exr"), again = read_as_light("ap1.exr");
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(stored[c], ap1[c], 3e-4) << type;
+      EXPECT_NEAR(again[c], light[c], 5e-4) << type;
+    }
+  }
+  // Beside layers that stay, the colour has their primaries.
+  OIIO::ImageSpec spec(8, 8, 6, OIIO::TypeFloat);
+  spec.channelnames = {"R", "G", "B", "diffuse.R", "diffuse.G", "diffuse.B"};
+  Pixel both = ap1;
+  both.insert(both.end(), ap1.begin(), ap1.end());
+  const auto expect_kept = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"run",      "look.lua",      "layers.exr", "-o",
+                                   "kept.exr", "--keep-layers", "--type",     "float"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    const auto found = pixels_of("kept.exr");
+    for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(found[c], both[c], 1e-5) << c;
+  };
+  ASSERT_NO_FATAL_FAILURE(make("layers.exr", spec, both));
+  expect_kept({"--input-space", "acescg"});
+  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kAcescg);
+  ASSERT_NO_FATAL_FAILURE(make("layers.exr", spec, both));
+  expect_kept({});
+  expect_acescg("kept.exr");
+  expect_kept({"--layer", "diffuse"});
+  const Outcome refused =
+      run({"run", "look.lua", "layers.exr", "-o", "no.exr", "--keep-layers", "--output-space", "acescg"});
+  EXPECT_EQ(refused.exit_code, kUsage);
+  EXPECT_THAT(refused.err, HasSubstr("--keep-layers writes colours in the primaries of the layers beside them"));
+}
+
 TEST_F(Colours, ProfilesOfWebpAndAvif) {
   ASSERT_NO_FATAL_FAILURE(make("plain.exr", {64, 64, 3, OIIO::TypeHalf}, {1, 0, 0}));
   ASSERT_EQ(run({"run", "look.lua", "plain.exr", "-o", "plain.webp"}).exit_code, kDone);
@@ -154,12 +221,17 @@ TEST_F(Colours, CodesOfAvif) {
 
 TEST_F(Colours, CodesOfPng) {
   ASSERT_NO_FATAL_FAILURE(make("plain.png", {8, 8, 3, OIIO::TypeUInt8}, {1, 0, 0}));
-  const std::string plain = read("plain.png");
+  ASSERT_NO_FATAL_FAILURE(make("half.png", {8, 8, 3, OIIO::TypeUInt8}, {0.5f, 0, 0}));
+  const std::string plain = read("plain.png"), half = read("half.png");
+  const auto chunk = [](const std::string& named) {
+    const auto crc = crc32(0, reinterpret_cast<const Bytef*>(named.data()), static_cast<uInt>(named.size()));
+    return big(static_cast<std::uint32_t>(named.size() - 4)) + named + big(static_cast<std::uint32_t>(crc));
+  };
   const auto coded = [&](const std::string& four) {
-    std::string chunk = "cICP" + four;
-    chunk += big(static_cast<std::uint32_t>(
-        crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size()))));
-    write("coded.png", plain.substr(0, 33) + big(static_cast<std::uint32_t>(four.size())) + chunk + plain.substr(33));
+    write("coded.png", plain.substr(0, 33) + chunk("cICP" + four) + plain.substr(33));
+  };
+  const auto with_gamma_1 = [&](const std::string& four) {
+    write("coded.png", half.substr(0, 33) + chunk("cICP" + four) + chunk("gAMA" + big(100000)) + half.substr(33));
   };
   std::string said;
   coded(std::string("\x0c\x0d\0\1", 4));
@@ -174,6 +246,13 @@ TEST_F(Colours, CodesOfPng) {
   coded(std::string("\xc8\x0d\0\1", 4));
   expect_near(read_as_light("coded.png", &said), {1, 0, 0}, "unknown");
   EXPECT_THAT(said, HasSubstr("its colours (primaries 200, transfer 13 of H.273) are not known; they are ignored"));
+  constexpr float kStored = 128 / 255.0f;
+  with_gamma_1(std::string("\x02\x02\0\1", 4));
+  expect_near(read_as_light("coded.png"), {kStored, 0, 0}, "nothing said: gAMA counts");
+  with_gamma_1(std::string("\x0c\x02\0\1", 4));
+  expect_near(read_as_light("coded.png"), {1.225f * kStored, 0, 0}, "P3, the curve of gAMA");
+  with_gamma_1(std::string("\x02\x0d\0\1", 4));
+  expect_near(read_as_light("coded.png"), {0.2158f, 0, 0}, "the curve alone");
 }
 
 }  // namespace

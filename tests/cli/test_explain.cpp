@@ -88,6 +88,11 @@ TEST_F(Explain, AsJson) {
   EXPECT_EQ(out.at("entries").at(0).at("state"), "skipped");
 }
 
+TEST_F(Explain, RatesAreNumbersOrFractions) {
+  for (const char* rate : {"24000/1001", "23.976023976023978"})
+    EXPECT_DOUBLE_EQ(parsed({"explain", "cave.lua", "--format", "json", "--fps", rate})["fps"], 24000.0 / 1001) << rate;
+}
+
 TEST_F(Explain, WhatIsMadeOnce) {
   write("dirt.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lens_dirt {} }\n");
   const Outcome outcome = run({"explain", "dirt.lua"});

@@ -129,6 +129,27 @@ TEST_F(CryptomatteManifests, MayLieBesideThePicture) {
   EXPECT_THAT(run({"run", "look.lua", "shot/a.exr", "-o", "o.exr"}).err, HasSubstr("'CryptoObject' is no JSON object"));
 }
 
+TEST_F(CryptomatteManifests, AreAmongWhatResumeLooksAt) {
+  make_picture("shot/a.exr", {{"cryptomatte/abc1234/manif_file", "man.json"}});
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.cryptomatte "
+        "{ names = \"Lampe\" } } }\n");
+  const auto run_again = [&] {
+    const Outcome outcome =
+        run({"run", "look.lua", "shot/a.exr", "-o", "o.exr", "--type", "float", "--resume", "--verbose"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err.find("up to date") != std::string::npos;
+  };
+  EXPECT_FALSE(run_again()) << "without a manifest";
+  EXPECT_TRUE(run_again());
+  write("shot/man.json", manifest());
+  EXPECT_FALSE(run_again()) << "it has come";
+  expect_mask(matte, "with a manifest");
+  EXPECT_TRUE(run_again());
+  write("shot/man.json", "{\"Lampe\":\"00000001\"}");
+  EXPECT_FALSE(run_again()) << "it has changed";
+}
+
 TEST_F(CryptomatteManifests, WithoutOneANameThatNoPixelHasIsToldOnce) {
   for (const char* name : {"a.0001.exr", "a.0002.exr"}) make_picture(name);
   EXPECT_THAT(err("Lamp", "a.0001.exr"), Not(HasSubstr("warning")));

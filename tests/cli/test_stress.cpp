@@ -69,6 +69,8 @@ TEST_F(Stress, WhatFailsIsKeptAndRunAgain) {
   const Outcome mended = stress({"--repeat", kept.string()});
   EXPECT_EQ(mended.exit_code, kDone) << mended.err;
   EXPECT_THAT(mended.out, HasSubstr("finite: holds"));
+  make_effect("this is no Lua");
+  EXPECT_EQ(stress({"--repeat", kept.string()}).exit_code, kScript) << "what cannot be made holds nothing";
 }
 
 TEST_F(Stress, OneTrialByItsNumber) {

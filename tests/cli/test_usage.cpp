@@ -49,6 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "'lots' is no amount of memory"},
         WrongUse{"fast", {"run", "look.lua", "a.exr", "-o", "a.mp4", "--fps", "1e10"}, "0.001 to 1000"},
         WrongUse{"slow", {"check", "look.lua", "--fps", "1e-5"}, "1e-5 is no number of frames a second, 0.001 to 1000"},
+        WrongUse{"no_rate", {"check", "look.lua", "--fps", "24000/0"}, "24000/0 is no number of frames a second"},
         WrongUse{"size", {"run", "look.lua", "a.exr", "-o", "a.png", "--size", "6y4"}, "'6y4' is no size"},
         WrongUse{"layers_of_another_size",
                  {"run", "look.lua", "a.exr", "-o", "b2.exr", "--keep-layers", "--size", "32x18"},

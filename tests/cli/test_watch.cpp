@@ -116,6 +116,17 @@ TEST_F(Watch, ABadFrameIsToldAndWaitedFor) {
   expect_as_one_run("1-2", 2);
 }
 
+TEST_F(Watch, AFrameThatFailedIsNoneOfThoseThatCameLater) {
+  make_truncated_exr("bad.exr");
+  give(1, "bad.exr");
+  give(2);
+  const Outcome outcome = watch("1-3", Steps({{there(2), [&] { give(3); }}, {there(3), [&] { give(1); }}}));
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("in/shot.0001.exr: error: "));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("frames failed"))) << "each is told by its name";
+  expect_as_one_run("1-3", 3);
+}
+
 TEST_F(Watch, FramesThatLookBackWaitForThoseBefore) {
   for (int frame = 1; frame <= 4; ++frame) make_exr(made(frame));
   write("effects/back.lua", R"(

@@ -122,6 +122,8 @@ TEST_F(Effects, MasksAgree) {
         "fx.mask.id { layer = \"objects\", index = 3 }",
         "fx.mask.id { layer = \"objects\", index = 300, antialias = true }",
         "1 - fx.mask.id { layer = \"objects\", index = 0, antialias = true } - fx.mask.id { layer = \"objects\" }",
+        "fx.mask.id { layer = \"objects\", index = 3, feather = 1.5 }",
+        "fx.mask.layer { layer = \"matte\", channel = \"g\", feather = 6 }",
         "fx.mask.radial { invert = true }",
         "fx.mask.radial { } + fx.mask.linear { }",
         "fx.mask.radial { } - fx.mask.linear { }",
@@ -132,6 +134,31 @@ TEST_F(Effects, MasksAgree) {
         "0.3"})
     expect_true(fmt::format("fx.color_adjustments {{ post_exposure = 1, saturation = -50, mask = {} }}", mask), scene,
                 3e-5);
+}
+
+/// Made of smaller masks, which end in other pixels at the border than the whole one does.
+TEST_F(Effects, WideFeathersAreGaussians) {
+  const Scene scene = light({301, 222});
+  for (const double feather : {7.0, 13.0, 30.0}) {
+    const std::string entries = fmt::format(
+        "fx.exposure {{ ev = 1, mask = fx.mask.id {{ layer = \"objects\", index = 300, feather = {} }} }}", feather);
+    const DoubleImage expected = truth(entries, scene);
+    const Made made = run_stack(entries, scene, Way::fused);
+    ASSERT_TRUE(made.ran());
+    const int border = static_cast<int>(2 * feather);
+    double inside = 0, anywhere = 0;  // of the mask, which adds as much of the light as it is
+    for (int y = 0; y < 222; ++y)
+      for (int x = 0; x < 301; ++x) {
+        const double light = scene.source.at(x, y).g;
+        if (light < 0.1) continue;
+        const double off =
+            std::abs(made.result[static_cast<std::size_t>(y * 301 + x) * 4 + 1] - expected.at(x, y).g) / light;
+        anywhere = std::max(anywhere, off);
+        if (x >= border && x < 301 - border && y >= border && y < 222 - border) inside = std::max(inside, off);
+      }
+    EXPECT_LT(inside, 2e-3) << feather;
+    EXPECT_LT(anywhere, 0.04) << feather;
+  }
 }
 
 // 100 - 1e-6 is 100 in floats, and points may be closer than floats can tell.

@@ -137,6 +137,7 @@ def test_settings(stack):
     amount = next(s for s in entry["settings"] if s["name"] == "amount")
     assert amount["default"] == 1 and amount["max"] == 1e6 and amount["doc"] == "Factor."
     assert stack.explain()["entries"][0]["state"] == "runs"
+    assert stack.explain()["inputs"] == [] and stack.explain()["pre_roll"] == 0
     assert stack.report()["kernels"] == ["gain.gain"]
 
 

@@ -97,6 +97,17 @@ TEST_F(PlayEditing, SavingKeepsTheHistoryAndQuittingAsks) {
   EXPECT_GT(report.at("milliseconds").at("wall"), 0);
 }
 
+TEST_F(PlayEditing, WhatComesBehindASaveIsAskedAbout) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  type("-100", "Return");
+  expect_color(kDull, "typed");
+  ASSERT_TRUE(user("key --delay 0 ctrl+s ctrl+z q"));
+  ASSERT_TRUE(program_->wait_for("asked whether to save")) << "the undo is not in the file";
+  ASSERT_TRUE(user("key s"));
+  expect_clean_end();
+  EXPECT_NE(preset().find("saturation = 0 },  -- mine"), std::string::npos) << preset();
+}
+
 TEST_F(PlayEditing, TheFileAndThePanelDisagree) {
   ASSERT_NO_FATAL_FAILURE(open());
   type("-100", "Return");

@@ -77,16 +77,23 @@ TEST_F(PlayExport, TheRangeIsWrittenWithTheLookOfItsBeginning) {
   expect_clean_end();
 }
 
-/// Two clips whose frames have the same numbers: the range of one is exported, of both it is told why not.
+/// Two clips whose frames have the same numbers: the range of one is exported, of both it is told why not; a folder has
+/// place for both.
 TEST_F(PlayExport, OfSeveralClipsTheOneThatTheRangeIsIn) {
   write_preset("{ 1, 0, 0 }");
   for (const char* name : {"more.0001.exr", "more.0002.exr", "more.0003.exr"})
     ASSERT_NO_FATAL_FAILURE(write_picture_file(name, 0.25f));
   play({"look.lua", "shot.####.exr", "more.####.exr", "--paused"});
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
-  ASSERT_TRUE(user("mousemove 400 300 key ctrl+r type out.####.exr"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  ASSERT_TRUE(program_->wait_for("export: error: shot.0001.exr and more.0001.exr would both be written to "));
+  ASSERT_NO_FATAL_FAILURE(begin_export("both/"));
+  EXPECT_TRUE(program_->wait_for("export: 6 frames written to both/"));
+  EXPECT_NEAR(pixel("both/more.0003.exr")[0], 0.25, 1e-3);
+  // What lies in a folder is asked about, too.
+  ASSERT_TRUE(user("key ctrl+r type both/"));
   ASSERT_TRUE(user("key Return"));
-  ASSERT_TRUE(program_->wait_for("export: error: the range has frames of several clips"));
+  ASSERT_TRUE(user("key Escape"));
   ASSERT_TRUE(user("key ctrl+shift+Right"));
   ASSERT_TRUE(program_->wait_for("shown more.0001.exr: position 3"));
   ASSERT_TRUE(user("key Right"));
@@ -97,6 +104,22 @@ TEST_F(PlayExport, OfSeveralClipsTheOneThatTheRangeIsIn) {
   EXPECT_EQ(files("out."), 2);
   EXPECT_NEAR(pixel("out.0002.exr")[0], 0.25, 1e-3) << "of the second clip";
   EXPECT_NEAR(pixel("out.0003.exr")[0], 0.25, 1e-3);
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+/// Of clips with other numbers each gives its own; single pictures are clips of one frame.
+TEST_F(PlayExport, EachClipGivesItsOwnFrames) {
+  write_preset("{ 1, 0, 0 }");
+  for (const char* name : {"more.0004.exr", "more.0006.exr", "still.exr"})
+    ASSERT_NO_FATAL_FAILURE(write_picture_file(name, 0.25f));
+  play({"look.lua", "shot.####.exr", "more.####.exr", "still.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out/"));
+  EXPECT_TRUE(program_->wait_for("export: 6 frames written to out/"));
+  EXPECT_NEAR(pixel("out/shot.0003.exr")[0], 0.5, 1e-3);
+  EXPECT_NEAR(pixel("out/more.0006.exr")[0], 0.25, 1e-3);
+  EXPECT_NEAR(pixel("out/still.exr")[0], 0.25, 1e-3);
   ASSERT_TRUE(user("key q"));
   expect_clean_end();
 }

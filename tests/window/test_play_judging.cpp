@@ -214,10 +214,13 @@ TEST_F(PlayWindow, TheWindowIsWhereItIsWanted) {
 TEST_F(PlayWindow, SettingsOfTheUserHoldForEveryWindow) {
   write_preset("{ 1, 0, 0 }");
   fs::create_directories(folder_ / "afterglow");
-  std::ofstream(folder_ / "afterglow/play.conf") << "# mine\ngeometry = 640x480+5+5\npaused = true  # begin so\n";
+  std::ofstream(folder_ / "afterglow/play.conf") << "# mine\ngeometry = 640x480+5+5\npaused = true  # begin so\n"
+                                                 << "export = graded.####.exr  # no comment is the pattern\n";
   play({"look.lua", "shot.####.exr"});
   ASSERT_TRUE(program_->wait_for("window 640x480"));
-  ASSERT_TRUE(user("mousemove 150 150 key q"));
+  ASSERT_TRUE(user("mousemove 150 150 key s"));
+  EXPECT_TRUE(until([&] { return fs::exists(folder_ / "graded.0001.exr"); }));
+  ASSERT_TRUE(user("key q"));
   expect_clean_end();
   play({"look.lua", "shot.####.exr", "--geometry", "660x490"});
   ASSERT_TRUE(program_->wait_for("window 660x490")) << "the command line counts more";

@@ -150,6 +150,27 @@ TEST_F(PlayWindow, FollowsItsSizeAndTheDesktopsWishToClose) {
   expect_clean_end();
 }
 
+TEST_F(PlayWindow, ItsPictureIsWrittenOrItIsToldWhyNot) {
+  write_preset("{ 1, 0, 0 }");
+  const fs::path gone = folder_ / "gone";
+  fs::create_directory(gone);
+  program_ = std::make_unique<PlayedWindow>(
+      xvfb_.display(), gone,
+      std::vector<std::string>{(folder_ / "look.lua").string(), (folder_ / "shot.0001.exr").string()});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("mousemove 400 300 key F12"));
+  ASSERT_TRUE(program_->wait_for("window written to ./afterglow-"));
+  EXPECT_FALSE(fs::is_empty(gone));
+  fs::remove_all(gone);
+  ASSERT_TRUE(user("key F12"));
+  EXPECT_TRUE(program_->wait_for("cannot be written"));
+  write_preset("{ 0, 1, 0 }");
+  EXPECT_TRUE(until_color(kX, kY, kGreen)) << "and the window is still there";
+  ASSERT_TRUE(ask_to_close(xvfb_.display()));
+  expect_clean_end();
+}
+
 TEST_F(PlayWindow, TakesWhatIsDroppedOnIt) {
   write_preset("{ 1, 0, 0 }");
   write_preset("{ 0, 1, 0 }", "second.lua");

@@ -190,6 +190,8 @@ TEST_F(SettingsTest, ExplanationsTellWhereValuesComeFrom) {
   ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
   first_sample();
   const auto told = json_of(afterglow_stack_explain, stack_.get());
+  EXPECT_EQ(told["inputs"], nlohmann::json::array());
+  EXPECT_EQ(told["pre_roll"], 0);
   const auto& gain = told["entries"][0];
   EXPECT_EQ(gain["state"], "runs");
   const auto amount = *std::ranges::find(gain["settings"], "amount", [](const auto& s) { return s["name"]; });
@@ -201,6 +203,17 @@ TEST_F(SettingsTest, ExplanationsTellWhereValuesComeFrom) {
   const auto report = json_of(afterglow_stack_report, stack_.get());
   EXPECT_EQ(report["kernels"], nlohmann::json{"gain.gain"});
   EXPECT_GT(report["milliseconds"]["script"], 0);
+}
+
+/// What a renderer has to make for it.
+TEST_F(SettingsTest, ExplanationsTellWhatALookAsksFor) {
+  write("look.lua",
+        "local fx = require 'afterglow'\nreturn fx.stack { fx.auto_exposure { }, fx.gain { mask = fx.mask.depth { } } "
+        "}\n");
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack_.get(), {})));
+  EXPECT_EQ(json_of(afterglow_stack_explain, stack_.get())["inputs"], nlohmann::json{"depth"});
+  first_sample();
+  EXPECT_EQ(json_of(afterglow_stack_explain, stack_.get())["pre_roll"], 121);
 }
 
 TEST_F(SettingsTest, ArgumentsOfThePresetAreGiven) {

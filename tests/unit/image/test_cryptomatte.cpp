@@ -108,8 +108,7 @@ TEST(LayerNames, AreKnownByTheirEnd) {
 }
 
 TEST(LayerNames, DepthIsFoundAmongThoseThatEndSo) {
-  FilePart part = blender();
-  part.channels.pop_back();  // without Mist, Depth.Z is the one that is depth
+  const FilePart part = blender();  // Mist is none
   const auto depth = find_depth({part}, "Z", nullptr);
   ASSERT_TRUE(depth && *depth);
   EXPECT_EQ((*depth)->channels, (std::vector<int>{4}));

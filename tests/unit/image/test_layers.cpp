@@ -107,6 +107,19 @@ TEST(Layers, DepthOfTheColoursOwnViewLayer) {
   EXPECT_THAT(chosen(parts, *find_depth(parts, "", &front).value()), ElementsAre("Front.Depth.Z"));
 }
 
+TEST(Layers, MistIsNoDepthAndThatOfDenoisersComesLast) {
+  const auto file = [](const std::vector<std::string>& more) {
+    Names channels{"V.Combined.R", "V.Combined.G", "V.Combined.B"};
+    channels.insert(channels.end(), more.begin(), more.end());
+    return std::vector<FilePart>{part(channels)};
+  };
+  EXPECT_THAT(depth(file({"V.Denoising Depth.Z", "V.Depth.Z", "V.Mist.Z"})), ElementsAre("V.Depth.Z"));
+  EXPECT_THAT(depth(file({"V.Denoising Depth.Z", "V.Mist.Z", "W.Depth.Z"})), ElementsAre("V.Denoising Depth.Z"))
+      << "another view layer has other things";
+  EXPECT_THAT(depth(file({"V.Mist.Z"})), testing::IsEmpty());
+  EXPECT_THAT(depth(file({"V.Mist.Z"}), "Mist"), ElementsAre("V.Mist.Z")) << "if it is asked for";
+}
+
 TEST(Layers, DepthOfTheColoursOwnEye) {
   const std::vector<FilePart> parts{part({"R", "G", "B"}, "rgba.left"), part({"Z"}, "depth.left"),
                                     part({"R", "G", "B"}, "rgba.right"), part({"Z"}, "depth.right")};

@@ -111,6 +111,40 @@ TEST(Radiance, ExposureIsTakenBackAndXyzRefused) {
   EXPECT_THAT(xyz.error().text(), HasSubstr("holds CIE XYZ"));
 }
 
+TEST(Pnm, DeepSamplesAreWhatTheyAre) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& header, const std::string& data) {
+    write_bytes(folder / "p.ppm", header, data);
+    Messages messages;
+    ReadOptions options;
+    options.raw = true;
+    const auto picture = read_picture(folder / "p.ppm", options, messages.diagnostics);
+    return picture ? picture->color.pixels : std::vector<float>{};
+  };
+  const auto expect = [&](const std::vector<float>& found, const std::vector<double>& wanted, const char* what) {
+    ASSERT_EQ(found.size(), wanted.size() / 3 * 4) << what;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      EXPECT_FLOAT_EQ(found[i / 3 * 4 + i % 3], static_cast<float>(wanted[i])) << what << " " << i;
+  };
+  const std::string six("\xff\xff\x9c\x40\x80\x00\x80\x01\x7f\xff\x00\x64", 12);
+  const std::vector<double> codes{65535, 40000, 32768, 32769, 32767, 100};
+  const auto over = [&](double most) {
+    std::vector<double> out;
+    for (const double code : codes) out.push_back(std::min(code, most) / most);
+    return out;
+  };
+  expect(read("P6\n# a comment\n2 1 65535\n", six), over(65535), "bytes");
+  expect(read("P3 2 1 65535 ", "65535 40000\n32768 # more\n32769 32767 100"), over(65535), "text");
+  expect(read("P6 2 1\n40000\n", six), over(40000), "another largest value");
+  const auto grey = read("P5 3 2 65535\n", six);
+  ASSERT_EQ(grey.size(), 24u);
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(grey[4 * i + c], static_cast<float>(codes[i] / 65535));
+  EXPECT_TRUE(read("P6 2 1 65535\n", six.substr(1)).empty()) << "too short";
+  EXPECT_TRUE(read("P3 2 1 65535\n", "1 2 3 4 5 x").empty());
+  for (const char* most : {"0", "65536"}) EXPECT_TRUE(read(std::string("P6 2 1 ") + most + "\n", six).empty());
+}
+
 TEST(Cineon, HoldsTheCodesWhereTheFormatSays) {
   const TemporaryFolder folder;
   const Picture picture = wedge(37, 5, false);
@@ -196,7 +230,10 @@ TEST(MoreFormats, OtherSpaces) {
   const auto refused = write(picture, folder / "o.exr", with(SampleType::automatic, gamma));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
-  EXPECT_THAT(refused.error().text(), HasSubstr("exr files hold scene-linear light; --output-space is for integer"));
+  EXPECT_THAT(refused.error().text(), HasSubstr("exr files hold scene-linear light, not gamma22; allowed: aces2065_1"));
+  const auto radiance = write(picture, folder / "o.hdr", with(SampleType::automatic, gamma));
+  ASSERT_FALSE(radiance);
+  EXPECT_THAT(radiance.error().text(), HasSubstr("hdr files hold scene-linear light; --output-space is for integer"));
 }
 
 TEST(MoreFormats, PamHasStraightAlpha) {

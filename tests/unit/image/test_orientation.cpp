@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "image/orientation.h"
 
 namespace afterglow {
@@ -39,6 +42,27 @@ TEST(Orientation, AllEightByTheDefinition) {
         EXPECT_EQ(*turned.at(seen_x, seen_y), *stored.at(x, y)) << "orientation " << o;
       }
     }
+  }
+}
+
+/// From one pixel to the next one, before and after.
+TEST(Orientation, VectorsTurnWithThePixels) {
+  for (int o = 1; o <= 8; ++o) {
+    Image marks(5, 4, 1), vectors(5, 4, 2);
+    *marks.at(1, 1) = 1;
+    *marks.at(3, 2) = 2;
+    for (std::size_t i = 0; i < vectors.pixels.size(); i += 2) vectors.pixels[i] = 2, vectors.pixels[i + 1] = 1;
+    const Image turned = upright(marks, o);
+    vectors = upright(std::move(vectors), o);
+    turn_vectors(vectors, o);
+    const auto place = [&](float mark) {
+      const auto at = static_cast<int>(std::ranges::find(turned.pixels, mark) - turned.pixels.begin());
+      return std::pair(at % turned.width, at / turned.width);
+    };
+    const auto [x0, y0] = place(1);
+    const auto [x1, y1] = place(2);
+    EXPECT_EQ(vectors.at(x0, y0)[0], static_cast<float>(x1 - x0)) << o;
+    EXPECT_EQ(vectors.at(x0, y0)[1], static_cast<float>(y1 - y0)) << o;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "image/encode.h"
 #include "image/input_space.h"
 #include "image/pack_frame.h"
 #include "image/palette.h"
@@ -138,6 +139,20 @@ TEST(PackFrame, NoiseKeepsTheMean) {
   double sum = 0;
   for (int i = 0; i < 64 * 64; ++i) sum += frame.bytes[static_cast<std::size_t>(i)];
   EXPECT_NEAR(sum / (64 * 64), 16 + 219 * stored, 0.01);
+}
+
+/// Codes that are exact up to a float's last bits get no noise, as in pictures.
+TEST(PackFrame, ExactCodesStay) {
+  Picture picture = picture_of(256, kBlueNoiseSize, false);
+  const InputSpace& srgb = *find_input_space("srgb").value();
+  for (int y = 0; y < kBlueNoiseSize; ++y)
+    for (int x = 0; x < 256; ++x)
+      for (std::size_t c = 0; c < 3; ++c)
+        picture.color.at(x, y)[c] = static_cast<float>(srgb.to_linear(((x + y) % 256) / 255.0));
+  const PackRules rules{find_pixel_layout("rgb24"), find_output_space("srgb").value(), kBt709Luma, true};
+  const PackedFrame frame = pack_frame(picture, rules);
+  for (int y = 0; y < kBlueNoiseSize; ++y)
+    for (int x = 0; x < 256 * 3; ++x) ASSERT_EQ(code_at(frame, 0, x, y), (x / 3 + y) % 256) << x << "," << y;
 }
 
 TEST(PixelLayout, NamesAndSizes) {

@@ -298,13 +298,17 @@ TEST(ReadExr, NotFiniteIsMendedCountedAndSaidOnce) {
   EXPECT_THAT(messages.warnings[0], HasSubstr("1 NaN"));
 }
 
-TEST(ReadExr, NegativesAloneAreANote) {
+TEST(ReadExr, NegativesAloneAreANoteUnlessTheyAreLarge) {
   const TemporaryFolder folder;
-  make_exr(folder / "a.exr", {-1, 1, 1}, 1, 1, [](Imf::Header&) {});
-  Messages messages;
+  make_exr(folder / "a.exr", {-0.009f, 1, 1}, 1, 1, [](Imf::Header&) {});
+  make_exr(folder / "b.exr", {-0.02f, 1, 1}, 1, 1, [](Imf::Header&) {});
+  Messages messages, others;
   ASSERT_TRUE(read_picture(folder / "a.exr", {}, messages.diagnostics));
   EXPECT_TRUE(messages.warnings.empty());
   EXPECT_EQ(messages.notes.size(), 1u);
+  ASSERT_TRUE(read_picture(folder / "b.exr", {}, others.diagnostics));
+  ASSERT_EQ(others.warnings.size(), 1u);
+  EXPECT_THAT(others.warnings[0], HasSubstr("1 samples are below -0.01"));
 }
 
 TEST(ReadExr, DeepIsRefused) {

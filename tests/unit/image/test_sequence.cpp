@@ -41,13 +41,12 @@ TEST(Pattern, PlacesForNumbers) {
   EXPECT_EQ(parse_pattern("a/shot.%04d.exr").value().file(12), "a/shot.0012.exr");
   EXPECT_EQ(parse_pattern("shot%d.exr").value().file(12), "shot12.exr");
   EXPECT_EQ(parse_pattern("shot.#.exr").value().file(12345), "shot.12345.exr");
-  EXPECT_EQ(parse_pattern("100%%.exr").value().file(1), "100%.exr");
+  for (const char* text : {"100%%.exr", "100%.exr"}) EXPECT_EQ(parse_pattern(text).value().file(1), "100%.exr");
   EXPECT_FALSE(parse_pattern("plain.exr").value().numbered);
 }
 
 TEST(Pattern, Refused) {
-  for (const char* text :
-       {"a.##.b.##.exr", "a%s.exr", "a%4d.exr", "a%", "a####/b.exr", "a%04d##.exr", "", "##########.exr"})
+  for (const char* text : {"a.##.b.##.exr", "a%s.exr", "a%4d.exr", "a####/b.exr", "a%04d##.exr", "", "##########.exr"})
     EXPECT_FALSE(parse_pattern(text)) << text;
 }
 
@@ -92,6 +91,20 @@ TEST(Pattern, AFileThatOnlyLooksLikeAPattern) {
   const TemporaryFolder folder;
   std::ofstream(folder / "take#2.exr") << "x";
   EXPECT_FALSE(parse_pattern((folder / "take#2.exr").string()).value().numbered);
+}
+
+TEST(Pattern, FoldersAreCalledWhatTheyAreCalled) {
+  const TemporaryFolder folder;
+  for (const char* name : {"take#2", "p 100%", "50%%", "%04d"}) {
+    const auto inside = folder / name;
+    std::filesystem::create_directory(inside);
+    std::ofstream(inside / "s.0003.exr") << "x";
+    const std::string pattern = sequence_in(inside).value();
+    EXPECT_EQ(pattern, inside / "s.####.exr");
+    EXPECT_EQ(parse_pattern(pattern).value().file(3), inside / "s.0003.exr");
+    EXPECT_EQ(parse_pattern((inside / "new.exr").string()).value().file(1), inside / "new.exr");
+  }
+  EXPECT_EQ(parse_pattern("no such 50%%/take#3/s.##.exr").value().file(7), "no such 50%/take#3/s.07.exr");
 }
 
 TEST(Pattern, FramesBeforeZeroAreOfTheSequence) {

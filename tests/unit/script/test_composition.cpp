@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scene.h"
 
 namespace afterglow::test {
@@ -234,6 +236,19 @@ TEST_F(Composition, WhatAMaskCanUseIsAskedFor) {
   auto preset = scene.load();
   ASSERT_TRUE(preset) << preset.error().text();
   EXPECT_THAT(preset->needs(), ElementsAre("layer:CryptoObject00", "layer:CryptoObject01", "layer:CryptoObject02"));
+}
+
+TEST_F(Composition, LongTextsAreWholeOrRefused) {
+  const auto with = [&](std::size_t size) {
+    scene.stack("fx.a { mask = fx.mask.cryptomatte { names = \"" + std::string(size, 'x') + "\" } }");
+    auto preset = scene.load();
+    if (!preset) return std::size_t{0};
+    const auto& settings = preset->entries()[0].mask->parts()[0]->settings;
+    return std::ranges::find(settings, "names", [](const auto& one) { return one.first; })->second.choice.size();
+  };
+  EXPECT_EQ(with(4096), 4096u);
+  EXPECT_EQ(with(4097), 0u);
+  EXPECT_THAT(scene.load_error(), HasSubstr("is too long; allowed: a text of at most 4096 bytes"));
 }
 
 TEST_F(Composition, ArgumentsComeFromTheCommandLine) {

@@ -115,10 +115,31 @@ TEST_F(PanelSaveTest, ACopyIsAPresetWhateverItsName) {
   EXPECT_THAT(read_file(folder_ / "hero.v2.lua").value(), "there") << "asked about first";
   ASSERT_TRUE(find_in_dialog());
   click();
+  frame();
   panel->saving().wait();
   frame();
   EXPECT_EQ(opened, (folder_ / "hero.v2.lua").string()) << panel->saving().message();
   EXPECT_EQ(read_file(folder_ / "hero.v2.lua").value(), kPreset);
+}
+
+TEST_F(PanelSaveTest, ACopyIsNotOpenedOverNewerChanges) {
+  std::string opened;
+  interface.ui().open = [&](const std::string& path) { opened = path; };
+  panel->save_as();
+  frame();
+  frame();
+  ImGui::GetIO().AddInputCharactersUTF8("other");
+  frame();
+  ASSERT_TRUE(find_in_dialog());
+  click();
+  for (int i = 0; i < 10 && !panel->saving().busy(); ++i) frame();
+  ASSERT_TRUE(panel->saving().busy());
+  port->changes.set("color_adjustments", "post_exposure", number(0.5));
+  panel->saving().wait();
+  frame();
+  EXPECT_EQ(opened, "");
+  EXPECT_THAT(panel->saving().message(), HasSubstr("other.lua; what was changed since is not in it"));
+  EXPECT_EQ(read_file(folder_ / "other.lua").value(), kPreset);
 }
 
 /// For the rest of a test.

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "image/deep_pnm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/ascii.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMostOfByte = 255, kMostOfPnm = 65535;
+
+Error malformed(const fs::path& file, std::string why) { return {ErrorKind::io, std::move(why), file.string()}; }
+
+/// The next number of text, behind white space and comments.
+std::optional<int> next_number(std::istream& in) {
+  constexpr int kLargest = 100'000'000;
+  int c = in.get();
+  while (c == '#' || c == ' ' || (c >= '\t' && c <= '\r')) {
+    if (c == '#')
+      while (c != '\n' && c != '\r' && in) c = in.get();
+    c = in.get();
+  }
+  if (!in || !is_digit(static_cast<char>(c))) return std::nullopt;
+  int value = 0;
+  for (; in && is_digit(static_cast<char>(c)); c = in.get()) value = std::min(value * 10 + (c - '0'), kLargest);
+  return value;  // one character behind it is taken too
+}
+
+Result<std::vector<float>> ends_too_early(const fs::path& file) {
+  return malformed(file, "is damaged: it ends before its last pixel");
+}
+
+}  // namespace
+
+Result<std::optional<DeepPnm>> deep_pnm(const fs::path& file, std::ifstream& in, std::uint64_t file_size) {
+  in.clear();
+  in.seekg(0);
+  const int p = in.get(), kind = in.get();
+  if (p != 'P' || (kind != '2' && kind != '3' && kind != '5' && kind != '6')) return std::optional<DeepPnm>();
+  const auto width = next_number(in), height = next_number(in), most = next_number(in);
+  if (!width || !height || !most) return std::optional<DeepPnm>();  // OpenImageIO says what is wrong
+  if (*most < 1 || *most > kMostOfPnm)
+    return malformed(file, fmt::format("says that {} is its largest value; a PNM has 1 to {}", *most, kMostOfPnm));
+  if (*most <= kMostOfByte || *width < 1 || *height < 1) return std::optional<DeepPnm>();
+  DeepPnm form{{*width, *height}, kind == '3' || kind == '6' ? 3 : 1, *most, kind < '5'};
+  form.data_at = static_cast<std::uint64_t>(in.tellg());
+  // Two bytes a sample: of text, a digit and what parts it from the next one.
+  if (file_size + 1 < form.data_at + 2 * form.samples()) return ends_too_early(file).error();
+  return std::optional(form);
+}
+
+Result<std::vector<float>> read_deep_pnm(const fs::path& file, const DeepPnm& form) {
+  std::ifstream in(file, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(form.data_at));
+  std::vector<float> samples(form.samples());
+  const auto value = [&](int code) {
+    return static_cast<float>(std::min(code, form.most)) / static_cast<float>(form.most);
+  };
+  if (form.text) {
+    for (float& sample : samples) {
+      const auto code = next_number(in);
+      if (!code) return ends_too_early(file);
+      sample = value(*code);
+    }
+    return samples;
+  }
+  const std::size_t row = static_cast<std::size_t>(form.size.width) * static_cast<std::size_t>(form.channels);
+  std::vector<unsigned char> bytes(2 * row);
+  for (std::size_t at = 0; at < samples.size(); at += row) {
+    if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())))
+      return ends_too_early(file);
+    for (std::size_t i = 0; i < row; ++i) samples[at + i] = value(bytes[2 * i] << 8 | bytes[2 * i + 1]);
+  }
+  return samples;
+}
+
+}  // namespace afterglow
