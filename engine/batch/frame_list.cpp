@@ -308,12 +308,16 @@ Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diag
   bool standard = false;
   AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs));
   std::optional<std::vector<int>> frames;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const std::string &input = inputs[i], &text = request.frames_of.empty() ? request.frames : request.frames_of[i];
+  const auto choose = [&](const std::string& text) -> Result<void> {
     frames.reset();
-    if (!text.empty()) {
-      AFTERGLOW_TRY(frames, parse_frames(text));
-    }
+    if (text.empty()) return {};
+    AFTERGLOW_TRY(frames, parse_frames(text));
+    return {};
+  };
+  AFTERGLOW_CHECK(choose(request.frames));
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string& input = inputs[i];
+    if (!request.frames_of.empty()) AFTERGLOW_CHECK(choose(request.frames_of[i]));
     if (input == "-") {
       standard = true;
       AFTERGLOW_CHECK(add_standard_input(request, names, frames, list, diagnostics));

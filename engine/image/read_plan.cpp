@@ -88,10 +88,12 @@ Rect upright_frame(const ReadPlan& plan) {
   Rect data = upright_data(plan.color_part());
   const Rect display = upright_display(plan.color_part());
   if (plan.cut_overscan) {
-    const int left = std::max(data.x, display.x), top = std::max(data.y, display.y);
-    const int right = std::min(data.x + data.width, display.x + display.width);
-    const int bottom = std::min(data.y + data.height, display.y + display.height);
-    if (left < right && top < bottom) data = {left, top, right - left, bottom - top};
+    const std::int64_t left = std::max(data.x, display.x), top = std::max(data.y, display.y);
+    const std::int64_t right = std::min(std::int64_t{data.x} + data.width, std::int64_t{display.x} + display.width);
+    const std::int64_t bottom = std::min(std::int64_t{data.y} + data.height, std::int64_t{display.y} + display.height);
+    if (left < right && top < bottom)
+      data = {static_cast<int>(left), static_cast<int>(top), static_cast<int>(right - left),
+              static_cast<int>(bottom - top)};
   }
   const int x0 = std::min(data.x, display.x), y0 = std::min(data.y, display.y);
   const std::int64_t x1 = std::max(std::int64_t{data.x} + data.width, std::int64_t{display.x} + display.width),

@@ -148,8 +148,9 @@ void report_pixel_shape(const FileFacts& facts, const fs::path& file, Diagnostic
 void report_overscan(const Picture& picture, const fs::path& file, Diagnostics& diagnostics) {
   constexpr int kFew = 100;  // of a side one part in so many: what renderers read beside the picture for their filters
   const Rect &data = picture.data_window, &display = picture.display_window;
-  const int x = std::max(display.x - data.x, data.x + data.width - display.x - display.width);
-  const int y = std::max(display.y - data.y, data.y + data.height - display.y - display.height);
+  const std::int64_t left = std::int64_t{display.x} - data.x, top = std::int64_t{display.y} - data.y;
+  const std::int64_t x = std::max(left, data.width - left - display.width);
+  const std::int64_t y = std::max(top, data.height - top - display.height);
   if (x * kFew <= display.width && y * kFew <= display.height) return;
   diagnostics.warn_once("overscan",
                         fmt::format("{}: the overscan around its {}×{} pixels counts as part of the picture, for "

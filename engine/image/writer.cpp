@@ -130,7 +130,8 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
 std::uint64_t write_bytes(const fs::path& file, const WriteOptions& options, Size size, bool has_alpha,
                           const FileFacts* facts) {
   const auto format = output_format(file, options);
-  if (format && (*format)->kind == OutputKind::exr && (options.space || options.keep_layers))
+  const bool beside = options.keep_layers && facts && facts->primaries;
+  if (format && (*format)->kind == OutputKind::exr && (options.space || beside))
     return static_cast<std::uint64_t>(size.area()) * 4 * sizeof(float);  // see in_primaries
   if (!format || (*format)->kind != OutputKind::png) return 0;
   constexpr std::uint64_t kCopies = 2;  // filtered, and packed
