@@ -119,6 +119,11 @@ void LayerArguments::add(CLI::App& command) {
   command.add_option("--motion", motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(group);
+  command
+      .add_option("--mattes", mattes,
+                  "Layers and cryptomattes that the picture has not, from another file; may be a pattern")
+      ->type_name("FILE")
+      ->group(group);
 }
 
 Result<void> PresetArguments::check_paths() const {

@@ -50,9 +50,10 @@ struct PresetArguments {
   Result<std::filesystem::path> preset_file() const;
 };
 
-/// --layer, --input-space, --overscan, --depth, --normal, --motion: where the parts of a picture come from, and how it is stored.
+/// --layer, --input-space, --overscan, --depth, --normal, --motion, --mattes: where the parts of a picture come from,
+/// and how it is stored.
 struct LayerArguments {
-  std::string layer, input_space, overscan = "keep", depth, normal, motion;
+  std::string layer, input_space, overscan = "keep", depth, normal, motion, mattes;
   void add(CLI::App& command);
   /// Into what takes them: ReadOptions, FrameListRequest.
   template <class Request>

@@ -185,6 +185,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--depth", a.layers.depth},
           {"--normal", a.layers.normal},
           {"--motion", a.layers.motion},
+          {"--mattes", a.layers.mattes},
           {"--size", a.size},
           {"--region", a.region},
           {"--nan-policy", a.nan_policy == "neighbour" ? a.nan_policy : ""},
@@ -283,6 +284,7 @@ Result<BatchRequest> RunArguments::request() const {
     return Error{ErrorKind::usage, "--report - and -o - are both standard output"};
   out.watch = watch;
   layers.choose(out.files);
+  out.files.mattes.file = layers.mattes;
   AFTERGLOW_TRY(out.session, session_options(*this));
   AFTERGLOW_TRY(out.loop, loop_options(*this, out.session.stack.max_memory));
   AFTERGLOW_TRY(out.preset, preset.preset_file());

@@ -84,6 +84,7 @@ Result<Confinement> sandbox_of(const RunArguments& a) {
     left.read.push_back(fs::exists(given, ignored) ? fs::path(given) : folder_of(given));
   };
   for (const auto& input : a.files.inputs) picture(input);
+  if (!a.layers.mattes.empty()) picture(a.layers.mattes);
   if (!a.audio.empty()) left.read.emplace_back(a.audio);
   for (const auto* layer : {&a.layers.depth, &a.layers.normal, &a.layers.motion})
     if (const LayerChoice choice = parse_layer_choice(*layer); !choice.file.empty()) picture(choice.file.string());

@@ -140,6 +140,7 @@ Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequ
   AFTERGLOW_TRY(job.depth, resolve(request.depth, file.frame));
   AFTERGLOW_TRY(job.normal, resolve(request.normal, file.frame));
   AFTERGLOW_TRY(job.motion, resolve(request.motion, file.frame));
+  AFTERGLOW_TRY(job.mattes, resolve(request.mattes, file.frame));
   return job;
 }
 
@@ -148,6 +149,7 @@ std::vector<fs::path> FrameJob::sources() const {
   if (!depth.file.empty()) files.push_back(depth.file);
   if (!normal.file.empty()) files.push_back(normal.file);
   if (!motion.file.empty()) files.push_back(motion.file);
+  if (!mattes.file.empty()) files.push_back(mattes.file);
   return files;
 }
 
@@ -251,7 +253,8 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     const fs::path file = pattern.file(0);
     const auto added = add_movie(request, names, file, frames, list, diagnostics);
     if (added || added.error().kind != ErrorKind::io || request.inputs.size() == 1 || frames) return added;
-    FrameJob job{.input = file, .output = names.name(file, 1), .depth = {}, .normal = {}, .motion = {}};
+    FrameJob job{
+        .input = file, .output = names.name(file.string() + ".png", 1), .depth = {}, .normal = {}, .motion = {}};
     job.sequence = file.string();
     job.refused = added.error();
     list.jobs.push_back(std::move(job));

@@ -21,7 +21,7 @@ namespace afterglow {
 struct FrameJob {
   int frame = 1;
   std::filesystem::path input, output;
-  LayerChoice depth, normal, motion;  ///< patterns resolved for this frame
+  LayerChoice depth, normal, motion, mattes{};  ///< patterns resolved for this frame; of mattes the file alone
   /// Frames of one sequence have the same: the pattern, or a file's name without its number.
   std::string sequence{};
   std::shared_ptr<Movie> movie{};  ///< of a video's frame; `input` is the video
@@ -47,7 +47,7 @@ struct FrameListRequest {
   SizeLimits limits{};                   ///< of videos and of what comes on standard input
   std::string frames;                    ///< "1-24x2"; empty: all that exist
   std::vector<std::string> frames_of{};  ///< of each input, in its place; empty: `frames` is of all
-  LayerChoice depth, normal, motion;
+  LayerChoice depth, normal, motion, mattes{};
 };
 
 /// Whether all frames go into this one output, a video or standard output.

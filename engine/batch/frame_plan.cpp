@@ -77,6 +77,7 @@ ReadOptions FramePlanner::read_options(const FrameJob& job) const {
   options.depth = job.depth;
   options.normal = job.normal;
   options.motion = job.motion;
+  options.mattes = job.mattes.file;
   options.movie = job.movie;
   options.movie_frame = job.movie_frame;
   options.nan_policy = options_.nan_policy;
@@ -122,6 +123,10 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
   context.layers = header.layers;
   context.metadata = {header.facts, &header.facts->metadata};
   context.picture = header.facts->file;
+  if (!header.facts->mattes.empty()) {
+    context.matte_metadata = {header.facts, &header.facts->matte_metadata};
+    context.mattes = header.facts->mattes;
+  }
   context.frame = job.frame;
   context.fps = job.fps > 0 ? job.fps : options_.fps;
   context.time = job.time.value_or(job.frame / options_.fps);

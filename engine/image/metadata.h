@@ -49,6 +49,9 @@ struct FileFacts {
   bool floating = false;     ///< half or float samples
   bool had_profile = false;  ///< an ICC profile was embedded
   bool had_chromaticities = false;
+  /// Of the file where layers come from that this one has not; empty: there is none.
+  std::filesystem::path mattes;
+  Metadata matte_metadata;
   /// Of linear colours as an EXR stores them; none: Rec.709, or as if.
   std::optional<Chromaticities> primaries;
   int orientation = 1;

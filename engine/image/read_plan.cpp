@@ -43,6 +43,17 @@ std::optional<ChannelChoice> sole_layer(const PictureFile& file, const Auxiliary
   return grey ? std::nullopt : std::optional(choice);
 }
 
+/// An image of another file has to fit.
+Result<void> check_size(const AuxiliaryPlan& made, const ReadPlan& plan) {
+  const Rect color = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
+  const bool same_frame = upright_display(plan.color_part()) == upright_display(plan.part_of(made));
+  if (!made.other || same_frame || window.size() == color.size()) return {};
+  return Error{ErrorKind::io,
+               fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", made.name, window.width,
+                           window.height, plan.file->path().string(), color.width, color.height),
+               made.other->path().string()};
+}
+
 Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted,
                                                     const ReadPlan& plan, const ReadOptions& options) {
   AuxiliaryPlan made;
@@ -66,14 +77,25 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
   }
   if (!found.value()) return std::optional<AuxiliaryPlan>();
   made.choice = *found.value();
-  const Rect color_window = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
-  const bool same_frame = upright_display(plan.color_part()) == upright_display(plan.part_of(made));
-  if (made.other && !same_frame && window.size() != color_window.size())
-    return Error{ErrorKind::io,
-                 fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width,
-                             window.height, plan.file->path().string(), color_window.width, color_window.height),
-                 file.path().string()};
+  AFTERGLOW_CHECK(check_size(made, plan));
   return std::optional<AuxiliaryPlan>(std::move(made));
+}
+
+/// Of the picture, or else of the file with mattes. None: neither has it; whoever asks for it is told so by name, with
+/// what is there.
+Result<std::optional<AuxiliaryPlan>> plan_layer(const std::string& name, const ReadPlan& plan) {
+  AuxiliaryPlan made{.name = name, .kind = nullptr, .other = nullptr, .choice = {}};
+  const std::string layer = name.substr(kLayerPrefix.size());
+  if (auto choice = find_layer(plan.file->parts(), layer)) {
+    made.choice = std::move(*choice);
+    return std::optional(std::move(made));
+  }
+  auto choice = plan.mattes ? find_layer(plan.mattes->parts(), layer) : std::nullopt;
+  if (!choice) return std::optional<AuxiliaryPlan>();
+  made.other = plan.mattes;
+  made.choice = std::move(*choice);
+  AFTERGLOW_CHECK(check_size(made, plan));
+  return std::optional(std::move(made));
 }
 
 }  // namespace
@@ -122,13 +144,15 @@ Result<ReadPlan> make_read_plan(const fs::path& file, const ReadOptions& options
   auto color = find_color(plan.file->parts(), options.layer);
   if (!color) return in_file(std::move(color).error(), file);
   plan.color = std::move(color).value();
+  if (!options.mattes.empty()) {
+    AFTERGLOW_TRY(plan.mattes, open_picture(options.mattes, limits_of(options)));
+  }
   AFTERGLOW_CHECK(check_sides(plan.color_part().data_window, "data window", limits_of(options), file));
   AFTERGLOW_CHECK(check_sides(plan.color_part().display_window, "display window", limits_of(options), file));
   for (const std::string& name : auxiliary) {
     if (is_layer(name)) {
-      // Whoever asks for a layer that is not there is told so by name, with what is there.
-      if (auto choice = find_layer(plan.file->parts(), name.substr(kLayerPrefix.size())))
-        plan.auxiliary.push_back({.name = name, .kind = nullptr, .other = nullptr, .choice = std::move(*choice)});
+      AFTERGLOW_TRY(auto made, plan_layer(name, plan));
+      if (made) plan.auxiliary.push_back(std::move(*made));
       continue;
     }
     const auto kind = std::ranges::find(kKinds, name, &AuxiliaryKind::name);

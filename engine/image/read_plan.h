@@ -34,7 +34,7 @@ inline bool is_layer(const std::string& name) { return name.starts_with(kLayerPr
 struct AuxiliaryPlan {
   std::string name;
   const AuxiliaryKind* kind = nullptr;  ///< null: a layer
-  std::unique_ptr<PictureFile> other;   ///< null: the picture's own file
+  std::shared_ptr<PictureFile> other;   ///< null: the picture's own file
   ChannelChoice choice;
 };
 
@@ -42,6 +42,7 @@ struct ReadPlan {
   std::unique_ptr<PictureFile> file;
   ChannelChoice color;
   std::vector<AuxiliaryPlan> auxiliary;
+  std::shared_ptr<PictureFile> mattes;  ///< null: no other file has layers for it
   bool cut_overscan = false;
 
   PictureFile& file_of(const AuxiliaryPlan& plan) const { return plan.other ? *plan.other : *file; }

@@ -225,6 +225,29 @@ Result<bool> read_halves(const ReadPlan& plan, const ColorEncoding& encoding, co
   return true;
 }
 
+/// What is remembered of the files of a plan.
+FileFacts facts_of(const ReadPlan& plan) {
+  FileFacts facts = plan.file->facts(plan.color);
+  if (!plan.mattes) return facts;
+  facts.mattes = plan.mattes->path();
+  const auto& parts = plan.mattes->parts();
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (!parts[part].unreadable.empty() || parts[part].channels.empty()) continue;
+    const Metadata said = plan.mattes->facts({static_cast<int>(part), {0, 0, 0, -1}}).metadata;
+    facts.matte_metadata.insert(facts.matte_metadata.end(), said.begin(), said.end());
+  }
+  return facts;
+}
+
+/// Names of all layers that can be asked for.
+std::vector<std::string> layers_of(const ReadPlan& plan) {
+  std::vector<std::string> names = layer_names(plan.file->parts());
+  if (!plan.mattes) return names;
+  for (const std::string& name : layer_names(plan.mattes->parts()))
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  return names;
+}
+
 /// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
 Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnostics& diagnostics) {
   const NanPolicy policy = options.nan_policy;
@@ -234,9 +257,9 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   picture.data_window = upright_frame(plan);
   picture.display_window = upright_display(part);
   picture.has_alpha = plan.color.channels[3] >= 0;
-  const auto facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
+  const auto facts = std::make_shared<FileFacts>(facts_of(plan));
   picture.facts = facts;
-  picture.layers = layer_names(plan.file->parts());
+  picture.layers = layers_of(plan);
   if (options.layer.empty())
     if (const auto equal = equal_colors(plan.file->parts()); !equal.empty())
       diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
@@ -349,6 +372,7 @@ Result<std::shared_ptr<Opened>> open_with(const fs::path& file, const ReadOption
   AFTERGLOW_TRY(opened->plan, make_read_plan(file, options, auxiliary));
   for (const AuxiliaryPlan& extra : opened->plan.auxiliary)
     note_stamp(opened->plan.file_of(extra).path(), opened->looks);
+  if (opened->plan.mattes) note_stamp(opened->plan.mattes->path(), opened->looks);
   return opened;
 }
 
@@ -396,9 +420,9 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
     for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.name);
-    header.layers = layer_names(plan.file->parts());
+    header.layers = layers_of(plan);
     header.has_alpha = plan.color.channels[3] >= 0;
-    header.facts = std::make_shared<const FileFacts>(plan.file->facts(plan.color));
+    header.facts = std::make_shared<const FileFacts>(facts_of(plan));
     header.format = plan.file->format();
     header.host_bytes = host_bytes(plan, options.auxiliary);
     return header;

@@ -73,6 +73,7 @@ struct ReadOptions {
   std::shared_ptr<Movie> movie;
   int movie_frame = 0;
   LayerChoice depth, normal, motion;
+  std::filesystem::path mattes;  ///< where layers are looked for that the picture has not; empty: nowhere
   std::vector<std::string>
       auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: a picture with values that are not finite is an error (io)

@@ -240,7 +240,7 @@ int Footage::clip_at(int position) const {
 std::vector<fs::path> Footage::files(int picture) const {
   const Source& source = pictures_[static_cast<std::size_t>(picture)];
   std::vector<fs::path> out{source.file};
-  for (const LayerChoice& choice : {read_.depth, read_.normal, read_.motion})
+  for (const LayerChoice& choice : {read_.depth, read_.normal, read_.motion, LayerChoice{read_.mattes, ""}})
     if (const auto layer = resolved(choice, source.number); layer && !layer->file.empty()) out.push_back(layer->file);
   return out;
 }
@@ -267,6 +267,8 @@ Result<Picture> Footage::read_whole(int picture, const FootageNeeds& needs, Diag
   AFTERGLOW_TRY(options.depth, resolved(read_.depth, source.number));
   AFTERGLOW_TRY(options.normal, resolved(read_.normal, source.number));
   AFTERGLOW_TRY(options.motion, resolved(read_.motion, source.number));
+  AFTERGLOW_TRY(const LayerChoice mattes, resolved({read_.mattes, ""}, source.number));
+  options.mattes = mattes.file;
   options.movie = source.movie;
   options.movie_frame = source.movie_frame;
   auto read = read_picture(source.file, options, diagnostics);

@@ -303,16 +303,17 @@ int graph_cryptomatte(lua_State* lua) {
   table.allow({"layer", "names"}, false);
   const std::string layer = table.text("layer").value_or(""), names = table.text("names").value_or("");
   table.finish("cryptomatte");
-  const auto& metadata = graph.context().metadata;
+  const BuildContext& context = graph.context();
   std::map<std::string, std::uint32_t> manifest;
-  if (metadata) {
+  for (const auto& [metadata, file] :
+       {std::pair(context.metadata, context.picture), {context.matte_metadata, context.mattes}}) {
+    if (!metadata) continue;
     auto found = find_cryptomatte(*metadata, layer);
     if (!found) throw failure(found.error().message);
-    if (*found) {
-      const Sandbox::Pause pause(*Runtime::of(lua).box);
-      manifest = (*found)->manifest.empty() ? manifest_beside(lua, graph.context().picture, **found)
-                                            : std::move((*found)->manifest);
-    }
+    if (!*found) continue;
+    const Sandbox::Pause pause(*Runtime::of(lua).box);
+    manifest = (*found)->manifest.empty() ? manifest_beside(lua, file, **found) : std::move((*found)->manifest);
+    break;
   }
   std::vector<std::string> known;
   for (const auto& [name, id] : manifest) known.push_back(name);

@@ -132,9 +132,11 @@ struct BuildContext {
   /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings
   /// in px are lengths of that picture. A stack's `reference_height` goes before it.
   double length_scale = 1;
-  std::vector<std::string> layers = {};           ///< names of all layers that it has, for messages
-  std::shared_ptr<const Metadata> metadata = {};  ///< of its file; null: unknown
-  std::filesystem::path picture = {};             ///< its file; empty: unknown
+  std::vector<std::string> layers = {};                 ///< names of all layers that it has, for messages
+  std::shared_ptr<const Metadata> metadata = {};        ///< of its file; null: unknown
+  std::filesystem::path picture = {};                   ///< its file; empty: unknown
+  std::shared_ptr<const Metadata> matte_metadata = {};  ///< of the file with mattes beside it; null: there is none
+  std::filesystem::path mattes = {};                    ///< that file
   friend bool operator==(const BuildContext&, const BuildContext&) = default;
 };
 

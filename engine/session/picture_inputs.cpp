@@ -55,6 +55,10 @@ BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   context.layers = picture.layers;
   if (picture.facts) context.metadata = {picture.facts, &picture.facts->metadata};
   if (picture.facts) context.picture = picture.facts->file;
+  if (picture.facts && !picture.facts->mattes.empty()) {
+    context.matte_metadata = {picture.facts, &picture.facts->matte_metadata};
+    context.mattes = picture.facts->mattes;
+  }
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
   return context;
 }

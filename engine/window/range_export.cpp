@@ -154,6 +154,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   out.files.depth = footage.read.depth;
   out.files.normal = footage.read.normal;
   out.files.motion = footage.read.motion;
+  out.files.mattes = {footage.read.mattes, ""};
   out.loop.max_memory = out.session.stack.max_memory;
   out.input_space = footage.read.input_space;
   out.loop.read.layer = footage.read.layer;

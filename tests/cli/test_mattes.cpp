@@ -80,6 +80,49 @@ TEST_F(Mattes, ALonelyAlphaIsAlpha) {
   EXPECT_THAT(run_mask("fx.mask.file { file = \"plain.exr\" }").err, Not(HasSubstr("warning")));
 }
 
+/// Renderers write them into files of their own.
+TEST_F(Mattes, OfAnotherFile) {
+  const auto light = [](const std::string&, int) { return kLight; };
+  make("a.1.exr", {"R", "G", "B"}, light);
+  make("a.2.exr", {"R", "G", "B"}, light);
+  const Attributes attributes{{"cryptomatte/abc1234/name", "CryptoObject"},
+                              {"cryptomatte/abc1234/hash", "MurmurHash3_32"},
+                              {"cryptomatte/abc1234/conversion", "uint32_to_float32"},
+                              {"cryptomatte/abc1234/manif_file", "names.json"}};
+  const auto value = [](const std::string& channel, int x) {
+    if (channel == "matte.V" || channel.ends_with("00.G")) return matte(x);
+    return channel.ends_with("00.R") ? std::bit_cast<float>(cryptomatte_id("Lamp")) : 0.0F;
+  };
+  const std::vector<std::string> channels{"matte.V", "CryptoObject00.R", "CryptoObject00.G", "CryptoObject00.B",
+                                          "CryptoObject00.A"};
+  for (const char* name : {"m/m.1.exr", "m/m.2.exr"}) {
+    fs::create_directories(path("m"));
+    make(name, channels, value, attributes);
+  }
+  char digits[9];
+  std::snprintf(digits, sizeof digits, "%08x", cryptomatte_id("Lamp"));
+  write("m/names.json", std::string("{\"Lampe\":\"") + digits + "\"}");
+  for (const char* mask : {"layer { layer = \"matte\"", "cryptomatte { names = \"Lampe\""}) {
+    write("look.lua",
+          std::string("local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.") +
+              mask + " } } }\n");
+    const Outcome outcome =
+        run({"run", "look.lua", "a.#.exr", "-o", "o.#.exr", "--type", "float", "--mattes", "m/m.#.exr"});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("warning"))) << mask;
+    fs::copy_file(path("o.2.exr"), path("o.exr"), fs::copy_options::overwrite_existing);
+    expect_mask(matte, mask);
+  }
+  // A frame whose mattes are missing fails alone.
+  fs::remove(path("m/m.1.exr"));
+  const Outcome one = run({"run", "look.lua", "a.#.exr", "-o", "p.#.exr", "--mattes", "m/m.#.exr"});
+  EXPECT_EQ(one.exit_code, kFiles);
+  EXPECT_THAT(one.err, HasSubstr("m/m.1.exr: error: "));
+  EXPECT_TRUE(fs::exists(path("p.2.exr")));
+  EXPECT_THAT(run({"run", "look.lua", "a.2.exr", "-o", "q.exr", "--mattes", "nowhere.exr"}).err,
+              HasSubstr("nowhere.exr"));
+}
+
 class CryptomatteManifests : public Mattes {
  protected:
   /// An object called Lamp covers its part of each pixel.
@@ -130,6 +173,7 @@ TEST_F(CryptomatteManifests, MayLieBesideThePicture) {
 }
 
 TEST_F(CryptomatteManifests, AreAmongWhatResumeLooksAt) {
+  fs::create_directories(path("shot"));
   make_picture("shot/a.exr", {{"cryptomatte/abc1234/manif_file", "man.json"}});
   write("look.lua",
         "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.cryptomatte "
