@@ -313,7 +313,7 @@ TEST_F(Inspect, MasksAreListedWithTheirSettings) {
   std::vector<std::string> names;
   for (const auto& listed : parsed({"effects", "--masks", "--json"})) names.push_back(listed.at("name"));
   EXPECT_THAT(names,
-              ::testing::ElementsAre("cryptomatte", "depth", "file", "hue", "layer", "linear", "luma", "radial"));
+              ::testing::ElementsAre("cryptomatte", "depth", "file", "hue", "id", "layer", "linear", "luma", "radial"));
   EXPECT_THAT(run({"effects", "mask.lumma"}).err, HasSubstr("did you mean 'mask.luma'?"));
 }
 
