@@ -125,7 +125,8 @@ void report_gamut(const Picture& picture, const ColorEncoding& encoding, const f
   if (wide && many(counts.negative)) {
     diagnostics.warn_once("outside Rec.709", fmt::format("{}: {} samples are of colours outside Rec.709; they end at 0",
                                                          file.string(), counts.negative));
-  } else if (many(counts.far_below) && picture.non_finite.empty()) {  // else they stand in what `report` says
+  } else if (encoding.curve == TransferCurve::linear && many(counts.far_below) && picture.non_finite.empty()) {
+    // Codes of videos lie outside of their RGB here and there. What is not finite too stands in what `report` says.
     diagnostics.warn_once("below 0", fmt::format("{}: {} samples are below {}; light is not negative, they count as 0",
                                                  file.string(), counts.far_below, -SanitizeCounts::kNoise));
   }
