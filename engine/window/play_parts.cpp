@@ -211,7 +211,9 @@ void PlayParts::add_to(WindowOptions& options) {
   options.export_range = [this](Player&, Ui& ui) { ask_for_range(ui); };
   options.saving = [this] {
     const PanelSave& save = panel_->saving();
-    if (panel_->busy()) return WindowOptions::Saving::busy;
+    // What was changed since is an edit again once the file that was written is on screen.
+    const bool settles = save.settling() && !player_.live().status().error;
+    if (panel_->busy() || settles) return WindowOptions::Saving::busy;
     const bool asks = panel_->asks_for_name();
     return asks || save.failed() || !save.refused().empty() ? WindowOptions::Saving::failed
                                                             : WindowOptions::Saving::done;

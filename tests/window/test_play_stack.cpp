@@ -141,7 +141,7 @@ TEST_F(PlayStack, TheMenuOfAnEffectCopiesItAndGivesItAMask) {
     const Screen screen = shot();
     return !screen.rgb.empty() && pixel(screen, 1042, 478) == pixel(screen, 1240, 310);
   }));
-  ASSERT_TRUE(user("mousemove 948 445 click 1"));
+  ASSERT_TRUE(user("mousemove 948 469 click 1"));
   ASSERT_TRUE(until([&] {
     return user("mousemove 400 300 key ctrl+s") && text_of("look.lua").find("mask.luma") != std::string::npos;
   })) << text_of("look.lua");
