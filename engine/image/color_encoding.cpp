@@ -209,11 +209,7 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
   }
   for (std::size_t i = 0; i < pixels; ++i) {
     float* pixel = rgba + i * 4;
-    if (encoding.matrix) {
-      const Matrix3& m = *encoding.matrix;
-      const double r = pixel[0], g = pixel[1], b = pixel[2];
-      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
-    }
+    if (encoding.matrix) multiply(*encoding.matrix, pixel, pixel);
     if (encoding.gain != 1)
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(pixel[c] * encoding.gain);
     if (straight || (divide && pixel[3] > 0))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace afterglow {
 
@@ -15,6 +16,11 @@ struct Chromaticities {
 inline constexpr Chromaticities kRec709{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};
 
 Matrix3 multiply(const Matrix3& a, const Matrix3& b);
+/// Of a colour; `to` may be `from`.
+inline void multiply(const Matrix3& m, const float* from, float* to) {
+  const double r = from[0], g = from[1], b = from[2];
+  for (std::size_t c = 0; c < 3; ++c) to[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
+}
 /// All zero when `m` cannot be inverted.
 Matrix3 inverse(const Matrix3& m);
 

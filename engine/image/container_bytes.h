@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
@@ -27,8 +29,8 @@ inline std::uint32_t little_endian(const unsigned char* p, std::size_t bytes) {
   return static_cast<std::uint32_t>(ordered(p, bytes, false));
 }
 
-inline Error malformed(const std::filesystem::path& file, const char* why) {
-  return Error{ErrorKind::io, why, file.string()};
+inline Error malformed(const std::filesystem::path& file, std::string why) {
+  return Error{ErrorKind::io, std::move(why), file.string()};
 }
 
 /// False: the file ends before.

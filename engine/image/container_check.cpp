@@ -83,8 +83,6 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       facts.srgb = true;
     } else if (type == "cICP" && length == 4) {
       facts.codes = {data[0], data[1], data[3] == 0};
-    } else if (type == "iCCP" && facts.profile.empty()) {
-      facts.profile = png_profile(in, at + 8, length);
     } else if (type == "gAMA" && length == 4 && number(0) > 0) {
       facts.gamma = number(0) / 1e5;
     } else if (type == "cHRM" && length == 32) {
@@ -92,7 +90,7 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       facts.primaries = Chromaticities{xy(1), xy(2), xy(3), xy(0)};
     }
     AFTERGLOW_CHECK(check_sum(file, in, at, length));
-    if (const char* why = png_metadata_fault(type, in, at + 8, length)) return malformed(file, why);
+    if (const char* why = png_metadata_fault(type, in, at + 8, length, facts.profile)) return malformed(file, why);
     if (type == "IEND") return facts;
     at += 12 + length;
   }

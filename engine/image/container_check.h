@@ -28,10 +28,8 @@ struct ContainerFacts {
   std::optional<Chromaticities> primaries;  ///< PNG cHRM
   /// PNG cICP, nclx of HEIF and AVIF: numbers of ITU-T H.273.
   struct Codes {
-    static constexpr int kUnsaid = 2;
-    int primaries = kUnsaid, transfer = kUnsaid;
+    int primaries = 2, transfer = 2;
     bool limited = false;  ///< samples have the range of video
-    bool whole() const { return primaries != kUnsaid && transfer != kUnsaid; }
   };
   std::optional<Codes> codes;
   std::vector<std::uint8_t> profile;  ///< ICC, where the reader may not pass it on: PNG, WebP, HEIF and AVIF

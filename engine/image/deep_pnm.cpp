@@ -6,14 +6,13 @@
 #include <algorithm>
 
 #include "core/ascii.h"
+#include "image/container_bytes.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMostOfByte = 255, kMostOfPnm = 65535;
-
-Error malformed(const fs::path& file, std::string why) { return {ErrorKind::io, std::move(why), file.string()}; }
 
 /// The next number of text, behind white space and comments.
 std::optional<int> next_number(std::istream& in) {

@@ -56,8 +56,7 @@ Picture in_primaries(const Picture& picture, const Chromaticities& primaries) {
       const float* from = color_row(picture, y, memory);
       float* to = out.color.at(0, y);
       for (int x = 0; x < width; ++x, from += 4, to += 4) {
-        const double r = from[0], g = from[1], b = from[2];
-        for (std::size_t c = 0; c < 3; ++c) to[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
+        multiply(m, from, to);
         to[3] = from[3];
       }
     }

@@ -12,7 +12,6 @@
 namespace afterglow {
 namespace {
 
-constexpr int kUnsaid = 2;
 constexpr std::array<double, 2> kWhiteC{0.310, 0.316}, kWhiteD65{0.3127, 0.3290}, kWhiteDci{0.314, 0.351};
 
 /// H.273, table 2.

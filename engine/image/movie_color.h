@@ -7,6 +7,9 @@
 
 namespace afterglow {
 
+/// The number of H.273 that says nothing.
+inline constexpr int kUnsaid = 2;
+
 /// Fills in the matrix, primaries and transfer that a video does not say, and notes what was taken: RGB and codecs of
 /// still pictures are sRGB; anything else is BT.709, or BT.601 when it is no larger than standard definition.
 void fill_in(MovieFacts& facts);

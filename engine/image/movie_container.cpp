@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "image/container_bytes.h"
 #include "image/file_signature.h"
 
 namespace afterglow {
@@ -52,11 +53,10 @@ bool is_moving(std::string_view brand) {
 bool holds_still(std::string_view head) {
   constexpr std::size_t kMajor = 8, kCompatible = 16, kBrand = 4;
   if (head.size() < kMajor + kBrand || head.substr(4, 4) != "ftyp") return false;
-  std::uint32_t size = 0;
-  for (const char c : head.substr(0, 4)) size = size << 8 | static_cast<std::uint8_t>(c);
+  const std::size_t size = big_endian(reinterpret_cast<const unsigned char*>(head.data()), 4);
   const std::string_view major = head.substr(kMajor, kBrand);
   if (is_still(major) || is_moving(major)) return is_still(major);
-  for (std::size_t at = kCompatible; at + kBrand <= std::min<std::size_t>(size, head.size()); at += kBrand)
+  for (std::size_t at = kCompatible; at + kBrand <= std::min(size, head.size()); at += kBrand)
     if (is_still(head.substr(at, kBrand))) return true;
   return false;
 }

@@ -97,13 +97,14 @@ class OiioFile : public PictureFile {
     encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
     encoding.gain = 1 / container_.exposure;
     const bool png = container_.kind == ContainerFacts::Kind::png;
-    const bool whole = png && container_.codes && container_.codes->whole();
+    const auto& codes = container_.codes;
+    const bool whole = png && codes && codes->primaries != kUnsaid && codes->transfer != kUnsaid;
     if (whole && use_numbers(encoding, diagnostics)) return encoding;  // before iCCP, as PNG has it
     if (use_profile(spec, encoding, diagnostics)) return encoding;
     if (png) {
       use_png_chunks(encoding, diagnostics);
-      if (container_.codes && !whole) use_numbers(encoding, diagnostics);  // what they say
-    } else if (container_.codes) {
+      if (codes && !whole) use_numbers(encoding, diagnostics);  // what they say
+    } else if (codes) {
       use_numbers(encoding, diagnostics);
     } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);

@@ -123,11 +123,7 @@ void OutputSpace::encode(const float* rgba, std::size_t pixels, float* stored) c
 #endif
   for (std::size_t i = 0; i < pixels; ++i, rgba += 4, stored += 4) {
     std::array<float, 4> pixel{rgba[0], rgba[1], rgba[2], rgba[3]};
-    if (matrix_) {
-      const Matrix3& m = *matrix_;
-      const double r = pixel[0], g = pixel[1], b = pixel[2];
-      for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
-    }
+    if (matrix_) multiply(*matrix_, pixel.data(), pixel.data());
     for (std::size_t c = 0; c < 3; ++c) stored[c] = stored_value(pixel[c]);
     stored[3] = pixel[3];
   }

@@ -72,7 +72,8 @@ const char* text_fault(const std::string& key, Bytes text) {
 
 }  // namespace
 
-const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::uint64_t at, std::uint64_t length) {
+const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::uint64_t at, std::uint64_t length,
+                               std::vector<std::uint8_t>& profile) {
   if (type != "eXIf" && type != "iCCP" && type != "tEXt" && type != "zTXt" && type != "iTXt") return nullptr;
   if (length > kMostMetadata) return "has more than 16 MiB of metadata in one piece";
   const Buffer chunk = bytes_at(in, at, length);
@@ -82,7 +83,11 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
   Bytes rest = Bytes(chunk).subspan(std::min(chunk.size(), key.size() + 1));
   if (type == "tEXt") return text_fault(key, rest);
   if (rest.empty()) return nullptr;
-  if (type == "iCCP") return icc_fault(inflated(rest.subspan(1)));
+  if (type == "iCCP") {
+    const Buffer unpacked = inflated(rest.subspan(1));
+    if (profile.empty()) profile = unpacked;
+    return icc_fault(unpacked);
+  }
   if (type == "zTXt") return text_fault(key, inflated(rest.subspan(1)));
   // iTXt: whether it is packed, how, two texts that end, the text.
   const bool packed = rest[0] != 0;
@@ -92,12 +97,6 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
     rest = rest.subspan(std::min(rest.size(), end + 1));
   }
   return packed ? text_fault(key, inflated(rest)) : text_fault(key, rest);
-}
-
-std::vector<std::uint8_t> png_profile(std::ifstream& in, std::uint64_t at, std::uint64_t length) {
-  const Buffer chunk = bytes_at(in, at, std::min<std::uint64_t>(length, kMostMetadata));
-  const auto name = static_cast<std::size_t>(std::ranges::find(chunk, 0) - chunk.begin());
-  return inflated(Bytes(chunk).subspan(std::min(chunk.size(), name + 2)));  // behind the way it is packed
 }
 
 Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {

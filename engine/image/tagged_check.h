@@ -12,10 +12,10 @@
 
 namespace afterglow {
 
-/// Of a PNG's chunk, whose data begin at `at`: what is wrong, or null.
-const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::uint64_t at, std::uint64_t length);
-/// The profile of an iCCP chunk, as far as it can be unpacked.
-std::vector<std::uint8_t> png_profile(std::ifstream& in, std::uint64_t at, std::uint64_t length);
+/// Of a PNG's chunk, whose data begin at `at`: what is wrong, or null. `profile` gets that of the first iCCP
+/// chunk, as far as it can be unpacked.
+const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::uint64_t at, std::uint64_t length,
+                               std::vector<std::uint8_t>& profile);
 /// Its ICC profile; empty: it has none. Errors: io.
 Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
 /// Errors: io.
