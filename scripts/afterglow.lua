@@ -45,7 +45,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field keep fun(self: afterglow.Graph, history: afterglow.Image, next: afterglow.Image)    the next frame gets this image as that history; of its size
 ---@field lookup fun(self: afterglow.Graph, lookup: { file: string, correction?: string }): afterglow.Lut  reads a look-up table (.cube, …), for the shader lut/apply; `correction`: which of a file of several
 ---@field ocio fun(self: afterglow.Graph, ocio: afterglow.OcioRequest): afterglow.OcioShader  a view or a colour space of an OpenColorIO configuration as a shader for `pass`
----@field image fun(self: afterglow.Graph, image: { file: string, alpha?: boolean }): afterglow.Image       reads a picture: scene-linear, associated alpha; with `alpha` one without is warned about
+---@field image fun(self: afterglow.Graph, image: { file: string, alpha?: boolean, raw?: boolean }|{ pixels: (number|number[])[], width?: integer }): afterglow.Image  reads a picture: scene-linear, associated alpha; with `alpha` one without is warned about; `raw`: its numbers as they are. Or makes one of numbers: a pixel is a number or 1 to 4 numbers, row by row
 ---@field cryptomatte fun(self: afterglow.Graph, objects: { layer: string, names: string }): number[]  ids of the objects of these names, with commas between them; those that the picture lacks are warned about
 ---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
 

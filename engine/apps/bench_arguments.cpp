@@ -36,33 +36,51 @@ Error nothing(const char* what, const char* allowed) {
 void BenchArguments::add(CLI::App& app) {
   app.add_option("PRESET", presets, "Looks to measure");
   app.add_option("--sizes", sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
+  auto* edits = app.add_flag(
+      "--reload", reload,
+      "How long edits take from the save to the new picture: medians of 50 of a value and 50 of a shader, at "
+      "1280x720 unless --sizes says otherwise");
+  auto* shots =
+      app.add_flag(
+             "--temporal", temporal,
+             "How steady what the looks add is: highlights that drift by parts of a pixel (or the shot of --picture "
+             "shot.####.exr), and one scene at the --sizes (default 960x540,1280x720,1920x1080,3840x2160)")
+          ->excludes(edits);
   app.add_option("--variants", variants,
                  fmt::format("Ways of execution, as `devices` and --report name them, or plain16f, plain32f, {} (what "
                              "`run` does), {} (the same, looking for values that are not finite, as `run` does)",
                              bench::kChosen, bench::kChecked))
+      ->excludes(edits)
+      ->excludes(shots)
       ->type_name("NAME,…");
   add_repeatable(app, "--vary", vary,
                  "Measures each value of a setting; errors are against the preset as it is (repeatable)",
-                 "EFFECT.SETTING=VALUE,…");
+                 "EFFECT.SETTING=VALUE,…")
+      ->excludes(edits);
   preset.add_overrides(app);
   preset.add_paths(app);
   app.add_option("--scaling", scaling, "Also squares of 256, 512, … up to this side, as `run` executes them")
+      ->excludes(edits)
+      ->excludes(shots)
       ->check(CLI::Range(0, 16384))
       ->type_name("SIDE");
-  app.add_option("--repeat", repeat, "Rounds; medians are of as many (default 9)")->check(CLI::Range(1, 1000));
-  app.add_option("--picture", picture, "Picture to measure on, scaled (default: a made scene)")->type_name("FILE");
-  app.add_option("--goals", goals, "Measure the ratios that a file of goals names")->type_name("FILE.json");
-  app.add_flag("--reload", reload,
-               "How long edits take from the save to the new picture: medians of 50 of a value and 50 of a shader, at "
-               "1280x720 unless --sizes says otherwise");
-  app.add_flag("--temporal", temporal,
-               "How steady what the looks add is: highlights that drift by parts of a pixel (or the shot of --picture "
-               "shot.####.exr), and one scene at the --sizes (default 960x540,1280x720,1920x1080,3840x2160)")
-      ->excludes("--reload");
+  app.add_option("--repeat", repeat, "Rounds; medians are of as many (default 9)")
+      ->excludes(edits)
+      ->excludes(shots)
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--picture", picture, "Picture to measure on, scaled (default: a made scene)")
+      ->excludes(edits)
+      ->type_name("FILE");
+  app.add_option("--goals", goals, "Measure the ratios that a file of goals names")
+      ->excludes(edits)
+      ->excludes(shots)
+      ->type_name("FILE.json");
   app.add_flag("--quick", quick, "320x180, 3 rounds, two variants: to see that it works");
   app.add_option("-o,--out", folder, "Folder for bench.json, bench.csv, bench.html, front.svg (default: bench)")
       ->type_name("FOLDER");
   app.add_option("--compare", compare, "Print ratios to an older bench.json; exit code 1 beyond --threshold")
+      ->excludes(edits)
+      ->excludes(shots)
       ->type_name("OLD.json");
   app.add_option("--threshold", threshold, "How many times as slow is too slow (default 1.15)")
       ->check(above_zero())

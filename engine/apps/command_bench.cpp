@@ -28,9 +28,8 @@ bench::Step steps(Console& console, std::size_t total, std::function<std::size_t
   };
 }
 
-/// --compare. Errors: other, when something is slower than --threshold allows.
-Result<void> compare(const BenchArguments& a, const bench::Report& report) {
-  AFTERGLOW_TRY(const std::string old, read_named_file(a.compare));
+/// --compare with what is in `old`. Errors: other, when something is slower than --threshold allows.
+Result<void> compare(const BenchArguments& a, const std::string& old, const bench::Report& report) {
   AFTERGLOW_TRY(const auto all, bench::compare_reports(old, a.compare, report));
   if (all.empty())
     return Error{ErrorKind::usage, "nothing that was measured now is in it", a.compare, 0,
@@ -44,6 +43,11 @@ Result<void> compare(const BenchArguments& a, const bench::Report& report) {
 
 /// Looks and goals. `report` says what they run on.
 Result<void> measure_times(const BenchArguments& a, Device& device, bench::Report& report, Console& console) {
+  std::string old;
+  if (!a.compare.empty()) {
+    AFTERGLOW_TRY(old, read_named_file(a.compare));
+    AFTERGLOW_CHECK(bench::compare_reports(old, a.compare, report));  // that it is a report
+  }
   std::vector<bench::Goal> goals;
   if (!a.goals.empty()) {
     AFTERGLOW_TRY(goals, bench::load_goals(a.goals));
@@ -54,10 +58,10 @@ Result<void> measure_times(const BenchArguments& a, Device& device, bench::Repor
   AFTERGLOW_CHECK(bench::measure_matrix(device, request, report, console.diagnostics(), step));
   AFTERGLOW_CHECK(bench::measure_goals(device, request.base, goals, report, console.diagnostics(), step));
   console.end_progress();
-  AFTERGLOW_CHECK(bench::write_report(report, a.folder));
   for (const auto& cell : report.cells) output("{}", bench::cell_text(cell));
   output("{}", bench::goals_text(report.goals));
-  return a.compare.empty() ? Result<void>() : compare(a, report);
+  AFTERGLOW_CHECK(bench::write_report(report, a.folder));
+  return a.compare.empty() ? Result<void>() : compare(a, old, report);
 }
 
 /// --reload: edits instead of frames.
@@ -88,13 +92,13 @@ Result<void> measure_steadiness(const BenchArguments& a, bench::Report& report, 
       bench::measure_stability(request, report, console.diagnostics(), steps(console, bench::steps_of(request)));
   console.end_progress();
   if (!measured) return measured;
-  AFTERGLOW_CHECK(bench::write_report(report, a.folder));
   output("{}", bench::stability_text(report));
-  return {};
+  return bench::write_report(report, a.folder);
 }
 
 Result<void> run_bench(const BenchArguments& a, Console& console) {
   AFTERGLOW_CHECK(a.check());
+  AFTERGLOW_CHECK(bench::make_report_folder(a.folder));  // before minutes of measuring
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
   AFTERGLOW_TRY(auto device, Device::create(asked, console.diagnostics()));
   if (a.reload) return measure_edits(a, *device, console);

@@ -18,7 +18,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstPause{100}, kLongestPause{5000};  // Slurm is asked once a pause
 constexpr milliseconds kStep{50};                              // until a signal is heard
-constexpr double kReportsBy = 90'000;  // ms that network file systems may keep a new file to themselves
+constexpr double kWithoutAnswer = 600'000;  // ms: a Slurm that is busy or begins again answers by then
+constexpr double kReportsBy = 90'000;       // ms that network file systems may keep a new file to themselves
 
 /// False when it was interrupted.
 bool pause(milliseconds length) {
@@ -26,13 +27,33 @@ bool pause(milliseconds length) {
   return !interrupted();
 }
 
+Error waited_no_longer(const farm::Job& job) {
+  return {ErrorKind::interrupted, "waited no longer; the job goes on", job.folder.string(), 0,
+          "`afterglow farm cancel` to end it"};
+}
+
 }  // namespace
 
 Result<void> wait_for_job(const farm::Job& job, Console& console) {
   const auto start = Clock::now();
+  auto answered = start;
+  bool first = true;                            // that Slurm is there is seen at once
   Clock::time_point other_than_ending = start;  // when a chunk was last seen to wait or run
   for (milliseconds length = kFirstPause;; length = std::min(length * 3 / 2, kLongestPause)) {
-    AFTERGLOW_TRY(const farm::JobStatus status, farm::status_of(job));
+    const auto asked = farm::status_of(job);
+    if (asked) {
+      answered = Clock::now();
+    } else if (milliseconds_since(answered) > kWithoutAnswer || first) {
+      console.end_progress();
+      return asked.error();
+    } else {
+      console.diagnostics().warn_once("slurm", asked.error().text() + "; it is asked again");
+      if (pause(length)) continue;
+      console.end_progress();
+      return waited_no_longer(job);
+    }
+    first = false;
+    const farm::JobStatus& status = *asked;
     console.progress(status.frames_done, status.frames, farm::waiting_line(job, status),
                      milliseconds_since(start) / 1000);
     const bool ending = status.count(farm::ChunkStatus::State::ending) > 0 &&
@@ -46,8 +67,7 @@ Result<void> wait_for_job(const farm::Job& job, Console& console) {
     }
     if (!pause(length)) {
       console.end_progress();
-      return Error{ErrorKind::interrupted, "waited no longer; the job goes on", job.folder.string(), 0,
-                   "`afterglow farm cancel` to end it"};
+      return waited_no_longer(job);
     }
   }
 }

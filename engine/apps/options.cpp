@@ -105,6 +105,14 @@ void LayerArguments::add(CLI::App& command) {
       ->type_name("SPACE")
       ->group(group);
   command
+      .add_option(
+          "--gamut", gamut,
+          "What becomes of components below 0, which colours outside of Rec.709 have: cut (default; they end at "
+          "0) or keep")
+      ->check(CLI::IsMember({"cut", "keep"}))
+      ->type_name("WORD")
+      ->group(group);
+  command
       .add_option("--overscan", overscan,
                   "What lies outside of an EXR's display window: keep (default; part of the picture) or cut")
       ->check(CLI::IsMember({"keep", "cut"}))
@@ -124,6 +132,12 @@ void LayerArguments::add(CLI::App& command) {
                   "Layers and cryptomattes that the picture has not, from another file; may be a pattern")
       ->type_name("FILE")
       ->group(group);
+}
+
+void LayerArguments::choose_reading(ReadOptions& options) const {
+  options.layer = layer;
+  options.keep_negative = gamut == "keep";
+  options.cut_overscan = overscan == "cut";
 }
 
 Result<void> PresetArguments::check_paths() const {

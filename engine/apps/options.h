@@ -50,11 +50,13 @@ struct PresetArguments {
   Result<std::filesystem::path> preset_file() const;
 };
 
-/// --layer, --input-space, --overscan, --depth, --normal, --motion, --mattes: where the parts of a picture come from,
-/// and how it is stored.
+/// --layer, --input-space, --gamut, --overscan, --depth, --normal, --motion, --mattes: where the parts of a picture
+/// come from, and how it is stored.
 struct LayerArguments {
-  std::string layer, input_space, overscan = "keep", depth, normal, motion, mattes;
+  std::string layer, input_space, gamut = "cut", overscan = "keep", depth, normal, motion, mattes;
   void add(CLI::App& command);
+  /// What every picture of a command is read with.
+  void choose_reading(ReadOptions& options) const;
   /// Into what takes them: ReadOptions, FrameListRequest.
   template <class Request>
   void choose(Request& request) const {

@@ -136,9 +136,8 @@ Result<PlayerOptions> PlayArguments::player() const {
   out.footage.inputs = inputs;
   out.footage.frames = frames;
   AFTERGLOW_TRY(out.footage.proxy, parse_proxy(proxy));
-  out.footage.read.layer = layers.layer;
+  layers.choose_reading(out.footage.read);
   out.footage.read.mattes = layers.mattes;
-  out.footage.read.cut_overscan = layers.overscan == "cut";
   if (!layers.input_space.empty()) AFTERGLOW_CHECK(find_input_space(layers.input_space));
   out.footage.read.input_space = layers.input_space;
   out.footage.read.max_bytes = out.live.stack.max_memory;

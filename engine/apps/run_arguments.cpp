@@ -50,7 +50,8 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->group(sequence);
   app.add_option(
          "--fps", a.fps,
-         "Frames a second, for animated presets and videos (default: for videos what the first picture says, else 24)")
+         "Frames a second, for animated presets, and of videos that are made of pictures (default: for videos what the "
+         "first picture says, else 24)")
       ->transform(frame_rates())
       ->type_name("N")
       ->group(sequence);
@@ -173,6 +174,7 @@ SampleType sample_type(const std::string& text) {
 PixelOptions pixel_options(const RunArguments& a) {
   const auto flag = [](bool given) { return given ? "yes" : ""; };
   const auto number = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
+  const auto other = [](const std::string& word, const char* usual) { return word == usual ? "" : word; };
   return {{"--set", join(a.preset.overrides, " ")},
           {"--at", a.preset.at},
           {"--arg", join(a.preset.values, " ")},
@@ -181,7 +183,8 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--reference", flag(a.execution.reference)},
           {"--layer", a.layers.layer},
           {"--input-space", a.layers.input_space},
-          {"--overscan", a.layers.overscan == "cut" ? a.layers.overscan : ""},
+          {"--gamut", other(a.layers.gamut, "cut")},
+          {"--overscan", other(a.layers.overscan, "keep")},
           {"--depth", a.layers.depth},
           {"--normal", a.layers.normal},
           {"--motion", a.layers.motion},
@@ -238,8 +241,7 @@ Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_m
   options.fps = a.fps.value_or(options.fps);
   options.takes_fps = !a.fps;
   options.max_memory = max_memory;
-  options.read.layer = a.layers.layer;
-  options.read.cut_overscan = a.layers.overscan == "cut";
+  a.layers.choose_reading(options.read);
   options.read.max_bytes = max_memory;
   options.reuse = !a.execution.reference;
   const auto not_with = [](const char* option) {

@@ -72,8 +72,9 @@ Result<void> OneSize::takes(const FrameJob& job, const Picture& picture) {
 }
 
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const FrameLoopOptions& options,
-                                             std::size_t frames, Diagnostics& diagnostics) {
-  if (is_video_output(files.output)) return open_video_sink(files.output, options.write, options.fps, diagnostics);
+                                             std::size_t frames, const FrameJob* last, Diagnostics& diagnostics) {
+  if (is_video_output(files.output))
+    return open_video_sink(files.output, options.write, options.fps, last, diagnostics);
   const bool stream = files.output == "-";
   if (const std::string option = option_of_videos(options, stream); !option.empty())
     return Error{ErrorKind::usage, fmt::format("{} is for videos", option), stream ? "standard output" : files.output,

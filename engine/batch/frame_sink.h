@@ -59,10 +59,10 @@ class OneSize {
   std::optional<Size> first_;
 };
 
-/// For the output of `files`, into which so many frames are known to go. Errors: usage (options that do not go with
-/// this output), io (it cannot be written; see check_output).
+/// For the output of `files`, into which so many frames are known to go; `last`: of them, null while none is. Errors:
+/// usage (options that do not go with this output), io (it cannot be written; see check_output).
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const FrameLoopOptions& options,
-                                             std::size_t frames, Diagnostics& diagnostics);
+                                             std::size_t frames, const FrameJob* last, Diagnostics& diagnostics);
 
 /// Can pictures of these names be written? One of each folder and format is looked at. Errors: usage (a format), io (a
 /// place).

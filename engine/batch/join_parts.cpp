@@ -29,7 +29,7 @@ Result<WholeVideo> whole_video(const BatchRequest& request, const std::vector<Fr
   const auto& file = request.files.output;
   AFTERGLOW_TRY(out.plan, plan_video(file, request.loop.write, false, false));
   VideoTimes times(file, frame_rate(request.loop.fps));
-  times.begin(frames.front(), out.plan);
+  times.begin(frames.front(), frames.back(), out.plan);
   AFTERGLOW_TRY(out.plan.patience, patience_of_process());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     AFTERGLOW_TRY(const VideoTime time, times.of(frames[i], i + frames[i].missing));
@@ -47,7 +47,7 @@ Result<void> check_parts(const BatchRequest& request, const std::vector<FrameJob
   if (std::ranges::find(kOfDifferences, extension) != kOfDifferences.end())
     return Error{ErrorKind::usage, fmt::format("{} files cannot be joined from pieces", extension.substr(1)),
                  file.string(), 0, "mp4, mov, mkv, webm, or pictures, which `afterglow run` makes one of"};
-  AFTERGLOW_TRY(const auto sink, open_sink(request.files, request.loop, frames.size(), diagnostics));
+  AFTERGLOW_TRY(const auto sink, open_sink(request.files, request.loop, frames.size(), &frames.back(), diagnostics));
   if (!sink->is_one()) {
     std::vector<std::filesystem::path> outputs;
     std::ranges::transform(frames, std::back_inserter(outputs), &FrameJob::output);

@@ -22,8 +22,13 @@ bool is_deep(const FileFacts* facts) { return facts && (facts->floating || facts
 
 class VideoSink : public FrameSink {
  public:
-  VideoSink(std::filesystem::path file, const WriteOptions& options, double fps, Diagnostics& diagnostics)
-      : file_(std::move(file)), options_(options), times_(file_, frame_rate(fps)), diagnostics_(diagnostics) {}
+  VideoSink(std::filesystem::path file, const WriteOptions& options, double fps, FrameJob last,
+            Diagnostics& diagnostics)
+      : file_(std::move(file)),
+        options_(options),
+        times_(file_, frame_rate(fps)),
+        last_wanted_(std::move(last)),
+        diagnostics_(diagnostics) {}
 
   Result<void> check() const {
     if (options_.keep_layers)
@@ -97,7 +102,7 @@ class VideoSink : public FrameSink {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
     plan.pack.space = video_space(options_, *plan.pack.layout, picture.view);
-    times_.begin(job, plan);
+    times_.begin(job, last_wanted_, plan);
     if (picture.facts) keep_facts(*picture.facts, plan, held);
     constexpr int kPq = 16;
     if (plan.transfer == kPq && job.movie && job.movie->facts().hdr_metadata)
@@ -141,6 +146,7 @@ class VideoSink : public FrameSink {
   std::filesystem::path file_;
   WriteOptions options_;
   VideoTimes times_;
+  FrameJob last_wanted_;  ///< of a video, or none
   OneSize size_;
   Diagnostics& diagnostics_;
   std::unique_ptr<VideoWriter> writer_;
@@ -152,8 +158,8 @@ class VideoSink : public FrameSink {
 }  // namespace
 
 Result<std::unique_ptr<FrameSink>> open_video_sink(const std::filesystem::path& file, const WriteOptions& options,
-                                                   double fps, Diagnostics& diagnostics) {
-  auto sink = std::make_unique<VideoSink>(file, options, fps, diagnostics);
+                                                   double fps, const FrameJob* last, Diagnostics& diagnostics) {
+  auto sink = std::make_unique<VideoSink>(file, options, fps, last ? *last : FrameJob{}, diagnostics);
   AFTERGLOW_CHECK(sink->check());
   return std::unique_ptr<FrameSink>(std::move(sink));
 }

@@ -26,38 +26,54 @@ Error VideoTimes::of_one() const {
   return {ErrorKind::usage, "takes frames of one video, by rising numbers, or pictures alone", file_.string()};
 }
 
-void VideoTimes::begin(const FrameJob& first, VideoPlan& plan) {
+void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& plan) {
   plan.rate = first.passing && first.fps > 0 ? frame_rate(first.fps) : rate_;
   plan.time_base = {plan.rate.denominator, plan.rate.numerator};
   if (!has_times(first)) return;
   movie_ = first.movie;
+  if (last.movie == movie_) wanted_ = last.movie_frame;
   const MovieFacts& facts = movie_->facts();
   // Clocks of MPEG streams run from anywhere; those of other containers begin with the shot.
   const bool running = facts.container.starts_with("mpeg");
   if (running || first.movie_frame > 0) start_ = facts.pts[static_cast<std::size_t>(first.movie_frame)];
   plan.time_base = facts.time_base;
   if (facts.rate.numerator > 0) plan.rate = facts.rate;
-  plan.source = movie_->file();
-  const double unit = 1e6 * facts.time_base.numerator / facts.time_base.denominator;
-  plan.range.shift = std::llround(static_cast<double>(start_) * unit);
-  if (first.movie_frame > 0) plan.range.begin = plan.range.shift;
+  if (!facts.pictures_alone) plan.source = movie_->file();
+  const auto microseconds = [&](long long pts) {
+    return std::llround(static_cast<double>(pts) * 1e6 * facts.time_base.numerator / facts.time_base.denominator);
+  };
+  const auto range_from = [&](long long zero) {
+    CopyRange range;
+    range.shift = microseconds(start_ - zero);
+    if (first.movie_frame > 0) range.begin = range.shift;
+    const auto behind = static_cast<std::size_t>(wanted_ + 1);
+    if (wanted_ >= 0 && behind < facts.pts.size()) range.end = microseconds(facts.pts[behind] - zero);
+    return range;
+  };
+  plan.range = range_from(0);
+  plan.audio_range = range_from(running ? facts.pts.front() : 0);
 }
 
 Result<VideoTime> VideoTimes::of(const FrameJob& job, std::size_t index) {
   if (has_times(job) != static_cast<bool>(movie_) || (movie_ && job.movie != movie_)) return of_one();
   // Frames that failed before the first one that came are held by it.
   if (!movie_) return VideoTime{std::exchange(begun_, true) ? static_cast<long long>(index) : 0, 1};
-  const auto& pts = movie_->facts().pts;
-  const auto at = static_cast<std::size_t>(job.movie_frame);
   if (last_ >= job.movie_frame) return of_one();
-  last_ = job.movie_frame;
-  whole_ = at + 1 == pts.size();
-  return VideoTime{pts[at] - start_, whole_ ? length_of_last(movie_->facts()) : pts[at + 1] - pts[at]};
+  return time_of(job.movie_frame);
 }
 
-std::optional<VideoTime> VideoTimes::held(std::size_t frames, VideoTime last) const {
+VideoTime VideoTimes::time_of(int frame) {
+  const auto& pts = movie_->facts().pts;
+  const auto at = static_cast<std::size_t>(frame);
+  last_ = frame;
+  whole_ = at + 1 == pts.size();
+  return {pts[at] - start_, whole_ ? length_of_last(movie_->facts()) : pts[at + 1] - pts[at]};
+}
+
+std::optional<VideoTime> VideoTimes::held(std::size_t frames, VideoTime last) {
+  if (movie_) return wanted_ > last_ ? std::optional(time_of(wanted_)) : std::nullopt;
   const auto end = static_cast<long long>(frames) - 1;
-  return !movie_ && end > last.pts ? std::optional(VideoTime{end, 1}) : std::nullopt;
+  return end > last.pts ? std::optional(VideoTime{end, 1}) : std::nullopt;
 }
 
 }  // namespace afterglow

@@ -16,23 +16,25 @@ class VideoTimes {
   /// `rate`: of frames that have no times of their own.
   VideoTimes(std::filesystem::path file, Rational rate) : file_(std::move(file)), rate_(rate) {}
 
-  /// The clock, and the video that sound and the rest are copied from.
-  void begin(const FrameJob& first, VideoPlan& plan);
+  /// The clock, and the video that sound and the rest are copied from. `last`: of the frames that were asked for.
+  void begin(const FrameJob& first, const FrameJob& last, VideoPlan& plan);
   /// `index`: its place among those that were asked for. Errors: usage (frames of several videos, or backwards).
   Result<VideoTime> of(const FrameJob& job, std::size_t index);
   /// That of the last place of `frames`, where the one that was written last is to stay until then.
-  std::optional<VideoTime> held(std::size_t frames, VideoTime last) const;
+  std::optional<VideoTime> held(std::size_t frames, VideoTime last);
   /// The last frame of their video was among them, or they have none.
   bool whole() const { return whole_; }
 
  private:
   Error of_one() const;
+  VideoTime time_of(int frame);  ///< which is the last one from now on
 
   std::filesystem::path file_;
   Rational rate_;
   std::shared_ptr<Movie> movie_;  ///< that the frames come from
   long long start_ = 0;           ///< time stamp of its first frame that is written
   int last_ = -1;                 ///< its frame that was written last
+  int wanted_ = -1;               ///< its last frame that was asked for; below 0: not known
   bool begun_ = false, whole_ = true;
 };
 

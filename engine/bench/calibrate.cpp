@@ -40,15 +40,22 @@ std::vector<CalibratedChoice> fastest_within_errors(const std::vector<Point>& po
   std::vector<CalibratedChoice> out;
   double best = 0;
   for (const double error : kErrors) {
+    // The first choice serves those who allow no error: however little a look shows of them, half floats and filtered
+    // fetches have one.
+    const bool for_all = out.empty();
     const Point* fastest = nullptr;
+    std::optional<ExecutionConfig> choice;
     for (const auto& point : points) {
-      const bool allowed = point.quality && point.quality->error.percentile <= error;
-      if (allowed && (!fastest || point.execute.median < fastest->execute.median)) fastest = &point;
+      if (!point.quality || !(point.quality->error.percentile <= error)) continue;
+      const auto config = parse_execution(point.choice);
+      if (!config || (for_all && (config->storage != Storage::fp32 || config->hardware_filter))) continue;
+      if (fastest && point.execute.median >= fastest->execute.median) continue;
+      fastest = &point;
+      choice = *config;
     }
-    if (!fastest || (!out.empty() && fastest->execute.median > kWorthwhile * best)) continue;
-    auto choice = parse_execution(fastest->choice);
-    if (!choice) continue;
-    out.push_back({out.empty() ? 0 : error, *choice});
+    if (for_all && !fastest) return out;
+    if (!fastest || (!for_all && fastest->execute.median > kWorthwhile * best)) continue;
+    out.push_back({for_all ? 0 : error, *choice});
     best = fastest->execute.median;
   }
   return out;

@@ -58,6 +58,7 @@ Result<Goal> read_goal(const Json& json, const fs::path& folder) {
   goal.goal = json.at(goal.at_least ? "at_least" : "at_most").get<double>();
   if (json.contains("next")) goal.next = json.at("next").get<double>();
   goal.repeat = json.value("repeat", 9);
+  if (goal.repeat < 1) return Error{ErrorKind::usage, fmt::format("\"repeat\" is {}; it is 1 at least", goal.repeat)};
   if (json.contains("command")) {
     const Json& command = json.at("command");
     goal.command = GoalCommand{.look = folder / command.at("look").get<std::string>(),

@@ -123,8 +123,9 @@ Result<double> step_of_report(const std::filesystem::path& file, const std::stri
   AFTERGLOW_TRY(const std::string text, read_file(file));
   const auto report = nlohmann::json::parse(text, nullptr, false);
   const nlohmann::json::json_pointer place("/frames/0/milliseconds");
-  if (!report.is_object() || !report.contains(place) || !report.at(place).contains(step))
-    return Error{ErrorKind::usage, fmt::format("reports have no step '{}'", step)};
+  const bool there = report.is_object() && report.contains(place) && report.at(place).is_object() &&
+                     report.at(place).contains(step) && report.at(place).at(step).is_number();
+  if (!there) return Error{ErrorKind::usage, fmt::format("reports have no step '{}'", step)};
   return report.at(place).at(step).get<double>() / 1000;
 }
 

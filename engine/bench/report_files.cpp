@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "bench/page.h"
 #include "bench/report.h"
@@ -16,9 +17,11 @@ std::string filled(std::string text, const std::string& mark, const std::string&
   return at == std::string::npos ? text : text.replace(at, mark.size(), content);
 }
 
-/// JSON that may stand in a <script>: nothing in it ends the element.
+/// JSON that may stand in a <script>: nothing in it ends the element, or begins a comment that hides its end.
 std::string for_script(std::string json) {
-  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.replace(at, 2, "<\\/");
+  constexpr std::string_view kLess = "\\u003c";  // "<" stands in texts alone
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos; at += kLess.size())
+    json.replace(at, 1, kLess);
   return json;
 }
 
@@ -31,11 +34,15 @@ std::string report_html(const Report& report) {
   return filled(std::move(page), "@chart@", kPageChart);
 }
 
-Result<void> write_report(const Report& report, const std::filesystem::path& folder) {
+Result<void> make_report_folder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem)
-    return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
+  if (!problem && folder.empty()) problem = std::make_error_code(std::errc::no_such_file_or_directory);
+  if (!problem) return {};
+  return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
+}
+
+Result<void> write_report(const Report& report, const std::filesystem::path& folder) {
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.json", report_json(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.csv", report_csv(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.html", report_html(report)));

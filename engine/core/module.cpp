@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "core/module_shapes.h"
 #include "core/own_file.h"
 
 namespace afterglow {
@@ -37,6 +39,11 @@ Result<void*> load_module(const std::string& name, const char* entry) {
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) {
       why = dlerror();
+      continue;
+    }
+    const auto shapes = reinterpret_cast<const char* (*)()>(dlsym(library, "afterglow_module_shapes"));
+    if (!shapes || std::string_view(shapes()) != kModuleShapes) {
+      why = file.string() + " is of another build of Afterglow; was it updated? Start the program anew";
       continue;
     }
     if (void* address = dlsym(library, entry)) return address;

@@ -91,12 +91,6 @@ Error not_a_job(const fs::path& file, const std::string& why) {
           "a folder that `afterglow farm` made"};
 }
 
-/// "1", "1-24" or "1-47x2".
-std::string range_text(int first, int last, int step) {
-  if (first == last) return fmt::format("{}", first);
-  return step == 1 ? fmt::format("{}-{}", first, last) : fmt::format("{}-{}x{}", first, last, step);
-}
-
 /// The newest job of a folder of outputs; empty: there is none.
 fs::path latest_job(const fs::path& outputs) {
   fs::path latest;
@@ -134,19 +128,6 @@ std::vector<Chunk> Job::inputs() const {
     }
     out.back().frames += "," + chunk.frames;
     out.back().count += chunk.count;
-  }
-  return out;
-}
-
-std::string frames_text(const std::vector<int>& frames) {
-  std::string out;
-  for (std::size_t i = 0; i < frames.size();) {
-    const int step = i + 1 < frames.size() ? frames[i + 1] - frames[i] : 1;
-    std::size_t last = i;
-    while (step > 0 && last + 1 < frames.size() && frames[last + 1] - frames[last] == step) ++last;
-    if (step != 1 && last < i + 2) last = i;  // two frames that are far apart are no range
-    out += (out.empty() ? "" : ",") + range_text(frames[i], frames[last], step);
-    i = last + 1;
   }
   return out;
 }

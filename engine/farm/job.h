@@ -70,9 +70,6 @@ struct Job {
 /// Chunks of at most so many frames, by sequence or video, in the order of `jobs`, which list_frames made.
 std::vector<Chunk> chunks_of(const std::vector<FrameJob>& jobs, int most);
 
-/// "1-24,30,32-40x2": what parse_frames makes the same frames of. Frames in their order, each once.
-std::string frames_text(const std::vector<int>& frames);
-
 /// A folder for a new job beside the outputs. Errors: io.
 Result<std::filesystem::path> make_job_folder(const std::filesystem::path& outputs);
 /// What the ID of a job made now would be.

@@ -52,34 +52,32 @@ void add_cluster(std::vector<std::string>& words, const std::string& cluster) {
   if (!cluster.empty()) words.push_back("--clusters=" + cluster);
 }
 
-/// Position of an array among those submitted; none: it is not of this job.
-std::optional<std::size_t> place_of(const Submissions& submissions, const std::string& id) {
+/// Position of an array among those submitted; none: it is not of this job. Clusters count for themselves.
+std::optional<std::size_t> place_of(const Submissions& submissions, const std::string& id, const std::string& cluster) {
   for (std::size_t i = 0; i < submissions.arrays.size(); ++i)
-    if (submissions.arrays[i].id == id) return i;
+    if (submissions.arrays[i].id == id && submissions.arrays[i].cluster == cluster) return i;
   return std::nullopt;
 }
 
-/// States of tasks, of which the array that was submitted last counts.
+/// What one cluster says of tasks, of which the array that was submitted last counts.
 class Latest {
  public:
-  explicit Latest(const Submissions& submissions) : submissions_(submissions) {}
+  Latest(const Submissions& submissions, const std::string& cluster) : submissions_(submissions), cluster_(cluster) {}
   void add(const std::string& array, std::string_view task, TaskState state) {
-    const auto place = place_of(submissions_, array);
+    const auto place = place_of(submissions_, array, cluster_);
     const auto index = parse_number<std::size_t>(task);
     if (!place || !index) return;
-    const std::size_t chunk = submissions_.arrays[*place].base + *index;
-    const auto [at, fresh] = from_.emplace(chunk, *place);
-    if (!fresh && at->second > *place) return;
-    at->second = *place;
-    state.array = array;
-    states_[chunk] = std::move(state);
+    const auto [at, fresh] = states_.try_emplace(submissions_.arrays[*place].base + *index);
+    if (!fresh && at->second.place > *place) return;
+    state.place = *place;
+    at->second = std::move(state);
   }
-  std::map<std::size_t, TaskState> take() { return std::move(states_); }
+  TaskStates take() { return std::move(states_); }
 
  private:
   const Submissions& submissions_;
-  std::map<std::size_t, std::size_t> from_;
-  std::map<std::size_t, TaskState> states_;
+  const std::string& cluster_;
+  TaskStates states_;
 };
 
 /// "12_3" as array and task.
@@ -126,16 +124,14 @@ Result<std::vector<std::string>> arrays_before_the_join(const Job& job, const Su
   AFTERGLOW_TRY(const auto states, task_states(all));
   for (const auto& [task, state] : states) {
     if (state.ended()) continue;
+    const SlurmArray& array = all.arrays[state.place];
     if (!job.is_join(task)) {
-      live.insert(state.array);
+      live.insert(array.id);
       continue;
     }
-    for (const SlurmArray& array : all.arrays) {
-      if (array.id != state.array) continue;
-      std::vector<std::string> words{"scancel", "--quiet", array.id};
-      add_cluster(words, array.cluster);
-      static_cast<void>(run_process(words));
-    }
+    std::vector<std::string> words{"scancel", "--quiet", array.id};
+    add_cluster(words, array.cluster);
+    static_cast<void>(run_process(words));
   }
   return std::vector<std::string>(live.begin(), live.end());
 }
@@ -155,8 +151,8 @@ std::string why_it_ended(const std::string& state) {
 }
 
 bool TaskState::ended() const {
-  constexpr std::array kEnds{"COMPLETED", "FAILED",        "CANCELLED", "TIMEOUT",   "NODE_FAIL",
-                             "DEADLINE",  "OUT_OF_MEMORY", "BOOT_FAIL", "PREEMPTED", "REVOKED"};
+  constexpr std::array kEnds{"COMPLETED",     "FAILED",    "CANCELLED", "TIMEOUT", "NODE_FAIL",     "DEADLINE",
+                             "OUT_OF_MEMORY", "BOOT_FAIL", "PREEMPTED", "REVOKED", "LAUNCH_FAILED", "RECONFIG_FAIL"};
   return std::ranges::any_of(kEnds, [&](const char* end) { return state == end; });
 }
 
@@ -262,13 +258,27 @@ std::string plan_text(const Job& job) {
   return out + fmt::format("\n# {}\n{}", (job.folder / "task.sh").string(), task_script(job));
 }
 
-Result<std::size_t> largest_array() {
-  AFTERGLOW_TRY(const std::string text, output_of({"scontrol", "show", "config"}));
-  for (const auto& line : lines_of(text)) {
+std::optional<std::size_t> largest_array(const std::string& config) {
+  constexpr std::string_view kLimit = "max_array_tasks=";  // one of SchedulerParameters, below MaxArraySize
+  std::optional<std::size_t> largest;
+  const auto hold = [&](std::string_view number) {
+    if (const auto size = parse_number<std::size_t>(trim(std::string(number))); size && *size > 0)
+      largest = std::min(largest.value_or(*size), *size);
+  };
+  for (const auto& line : lines_of(config)) {
     const std::size_t at = line.find('=');
-    if (at == std::string::npos || trim(line.substr(0, at)) != "MaxArraySize") continue;
-    if (const auto size = parse_number<std::size_t>(trim(line.substr(at + 1))); size && *size > 0) return *size;
+    const std::string name = trim(line.substr(0, at)), value = at == std::string::npos ? "" : trim(line.substr(at + 1));
+    if (name == "MaxArraySize") hold(value);
+    if (name != "SchedulerParameters") continue;
+    for (const std::string& parameter : split(value, ','))
+      if (parameter.starts_with(kLimit)) hold(std::string_view(parameter).substr(kLimit.size()));
   }
+  return largest;
+}
+
+Result<std::size_t> largest_array() {
+  AFTERGLOW_TRY(const std::string config, output_of({"scontrol", "show", "config"}));
+  if (const auto largest = largest_array(config)) return *largest;
   return Error{ErrorKind::io, "scontrol does not say MaxArraySize; are job arrays switched off?"};
 }
 
@@ -310,19 +320,22 @@ Result<void> cancel(const Job& job) {
     return Error{ErrorKind::io, "was not submitted to Slurm; cancel it where it was", job.folder.string()};
   all.cancelled = true;
   AFTERGLOW_CHECK(write_submissions(job, all));
+  Result<void> first;  // that went wrong; the others are cancelled all the same
   for (const auto& array : all.arrays) {
     std::vector<std::string> words{"scancel", "--quiet", array.id};
     add_cluster(words, array.cluster);
-    AFTERGLOW_TRY(const ProcessEnd ended, run_process(words));
+    const auto ended = run_process(words);
+    if (!ended) return ended.error();
     // An array that Slurm has forgotten has ended.
-    if (ended.code != 0 && ended.err.find("Invalid job id") == std::string::npos)
-      return Error{ErrorKind::io, fmt::format("scancel ended with code {}: {}", ended.code, last_words(ended))};
+    if (ended->code != 0 && ended->err.find("Invalid job id") == std::string::npos && first)
+      first = Error{ErrorKind::io, fmt::format("scancel of {} ended with code {}: {}; cancel again", array.id,
+                                               ended->code, last_words(*ended))};
   }
-  return {};
+  return first;
 }
 
-std::map<std::size_t, TaskState> states_of_queue(const std::string& squeue, const Submissions& submissions) {
-  Latest states(submissions);
+TaskStates states_of_queue(const std::string& squeue, const Submissions& submissions, const std::string& cluster) {
+  Latest states(submissions, cluster);
   for (const auto& line : lines_of(squeue)) {
     const auto parts = split(line, '|');
     if (parts.size() >= 5) states.add(parts[0], parts[1], {parts[2], parts[3], parts[4] == "None" ? "" : parts[4]});
@@ -330,8 +343,8 @@ std::map<std::size_t, TaskState> states_of_queue(const std::string& squeue, cons
   return states.take();
 }
 
-std::map<std::size_t, TaskState> states_of_accounting(const std::string& sacct, const Submissions& submissions) {
-  Latest states(submissions);
+TaskStates states_of_accounting(const std::string& sacct, const Submissions& submissions, const std::string& cluster) {
+  Latest states(submissions, cluster);
   for (const auto& line : lines_of(sacct)) {
     const auto parts = split(line, '|');
     if (parts.size() < 3) continue;
@@ -342,20 +355,28 @@ std::map<std::size_t, TaskState> states_of_accounting(const std::string& sacct, 
   return states.take();
 }
 
-Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissions) {
-  std::map<std::size_t, TaskState> states;
+void add_later(TaskStates& states, const TaskStates& more) {
+  for (const auto& [chunk, state] : more) {
+    const auto [at, fresh] = states.emplace(chunk, state);
+    if (!fresh && at->second.place < state.place) at->second = state;
+  }
+}
+
+Result<TaskStates> task_states(const Submissions& submissions) {
+  TaskStates states;
   for (const auto& [cluster, ids] : ids_by_cluster(submissions)) {
     std::vector<std::string> words{"squeue", "--noheader", "--array", "--states=all", "--format=%F|%K|%T|%N|%r"};
     // A single array that Slurm has forgotten is an error, a list of them is not.
     words.push_back("--jobs=" + ids + "," + ids);
     add_cluster(words, cluster);
     AFTERGLOW_TRY(const std::string text, output_of(words));
-    states.merge(states_of_queue(text, submissions));
+    add_later(states, states_of_queue(text, submissions, cluster));
     std::vector<std::string> asked{
         "sacct", "--noheader", "--parsable2", "--allocations", "--format=JobID,State,NodeList", "--jobs=" + ids};
     add_cluster(asked, cluster);
     const auto accounted = run_process(asked);
-    if (accounted && accounted->code == 0) states.merge(states_of_accounting(accounted->out, submissions));
+    if (accounted && accounted->code == 0)
+      add_later(states, states_of_accounting(accounted->out, submissions, cluster));
   }
   return states;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ std::string plan_text(const Job& job);
 /// The tasks of a job by number: its chunks, and the joining of a video.
 std::vector<std::size_t> every_task(const Job& job);
 
-/// MaxArraySize of the cluster. Errors: io (Slurm is not there, or does not answer).
+/// How many tasks an array of the cluster may have. Errors: io (Slurm is not there, or does not answer).
 Result<std::size_t> largest_array();
 /// Submits the tasks, by rising number, and takes down each array as it is accepted. Where one is refused, those before
 /// it are cancelled. The joining of a video waits for all chunks that Slurm has; one that waits already is taken back.
@@ -58,19 +59,27 @@ Result<void> cancel(const Job& job);
 
 /// What Slurm knows of a chunk.
 struct TaskState {
-  std::string state;    ///< in Slurm's words: PENDING, RUNNING, NODE_FAIL, …
-  std::string node;     ///< empty: none yet
-  std::string reason;   ///< why it waits
-  std::string array{};  ///< that it is of
-  bool ended() const;   ///< nothing more happens to it
+  std::string state;      ///< in Slurm's words: PENDING, RUNNING, NODE_FAIL, …
+  std::string node;       ///< empty: none yet
+  std::string reason;     ///< why it waits
+  std::size_t place = 0;  ///< of its array among those submitted
+  bool ended() const;     ///< nothing more happens to it
 };
 /// Why a task ended without an end of its own, for people: of TIMEOUT, OUT_OF_MEMORY, NODE_FAIL, …
 std::string why_it_ended(const std::string& state);
 /// Of the chunks that Slurm still knows: its queue, and its accounting where there is one. Errors: io.
 Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissions);
 
-/// The same from what `squeue --format="%F|%K|%T|%N|%r"` and `sacct --format=JobID,State,NodeList` print.
-std::map<std::size_t, TaskState> states_of_queue(const std::string& squeue, const Submissions& submissions);
-std::map<std::size_t, TaskState> states_of_accounting(const std::string& sacct, const Submissions& submissions);
+/// By chunk.
+using TaskStates = std::map<std::size_t, TaskState>;
+/// The same from what `squeue --format="%F|%K|%T|%N|%r"` and `sacct --format=JobID,State,NodeList` print of one
+/// cluster.
+TaskStates states_of_queue(const std::string& squeue, const Submissions& submissions, const std::string& cluster = "");
+TaskStates states_of_accounting(const std::string& sacct, const Submissions& submissions,
+                                const std::string& cluster = "");
+/// Of a chunk that both know, the array that was submitted later counts; of the same array `states`.
+void add_later(TaskStates& states, const TaskStates& more);
+/// How many tasks an array may have, by what `scontrol show config` prints; none: it does not say.
+std::optional<std::size_t> largest_array(const std::string& config);
 
 }  // namespace afterglow::farm

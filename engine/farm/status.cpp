@@ -104,6 +104,14 @@ void explain(ChunkStatus& chunk, const AttemptFile& attempt) {
     }
 }
 
+/// It waits for something that does not come by itself: somebody who releases it, other limits.
+bool is_stuck(const ChunkStatus& chunk) {
+  static const std::set<std::string_view> kUsual{"",           "none",      "priority",          "resources",
+                                                 "dependency", "begintime", "jobarraytasklimit", "cleaning",
+                                                 "prolog",     "licenses"};
+  return chunk.state == State::waiting && !kUsual.contains(chunk.why);
+}
+
 std::string chunk_name(const Chunk& chunk) {
   if (!chunk.frames.empty()) return chunk.frames;
   const std::string first = chunk.inputs.empty() ? "" : chunk.inputs.front();
@@ -126,18 +134,24 @@ bool JobStatus::live() const {
 
 Result<JobStatus> status_of(const Job& job) {
   JobStatus status;
-  status.chunks.resize(job.tasks());
   status.frames = job.frames();
   AFTERGLOW_TRY(const Submissions submissions, read_submissions(job));
   for (const auto& array : submissions.arrays) status.arrays.push_back(array.id);
-  std::map<std::size_t, TaskState> tasks;
-  // Slurm first: what ends between the two looks is then found ended.
-  if (!submissions.arrays.empty()) {
+  std::vector<AttemptFile> attempts;
+  bool again = false;
+  const auto look = [&]() -> Result<void> {
+    AFTERGLOW_TRY(attempts, attempts_of(job));
+    status.chunks.assign(job.tasks(), {});
+    take_attempts(status, attempts);
+    again = take_lost_video(job, status);
+    return {};
+  };
+  AFTERGLOW_CHECK(look());
+  TaskStates tasks;
+  if (!submissions.arrays.empty() && !status.done()) {
     AFTERGLOW_TRY(tasks, task_states(submissions));
+    AFTERGLOW_CHECK(look());  // what ended meanwhile is found ended
   }
-  AFTERGLOW_TRY(const auto attempts, attempts_of(job));
-  take_attempts(status, attempts);
-  const bool again = take_lost_video(job, status);
   for (const auto& [chunk, task] : tasks) {
     if (chunk >= status.chunks.size() || (again && task.ended())) continue;
     take_task(status.chunks[chunk], task, submissions.cancelled);
@@ -192,6 +206,10 @@ std::string waiting_line(const Job& job, const JobStatus& status) {
     out += fmt::format(" ({} nodes)", nodes.size());
   else if (!nodes.empty())
     out += fmt::format(" ({})", join(std::vector<std::string>(nodes.begin(), nodes.end()), " "));
+  std::set<std::string> reasons;
+  for (const ChunkStatus& chunk : status.chunks)
+    if (is_stuck(chunk)) reasons.insert(chunk.why);
+  if (!reasons.empty()) out += "; Slurm says: " + join(std::vector<std::string>(reasons.begin(), reasons.end()));
   if (!job.video.empty()) out += fmt::format("; the join is {}", word_of(status.chunks.back().state));
   return out;
 }
@@ -205,7 +223,7 @@ std::string status_text(const Job& job, const JobStatus& status, bool all) {
   std::size_t rows = 0;
   for (std::size_t i = 0; i < status.chunks.size(); ++i) {
     const ChunkStatus& chunk = status.chunks[i];
-    if (!all && (chunk.state == State::done || chunk.state == State::waiting)) continue;
+    if (!all && (chunk.state == State::done || (chunk.state == State::waiting && !is_stuck(chunk)))) continue;
     ++rows;
     table.add({fmt::format("{}", i), job.is_join(i) ? "join" : chunk_name(job.chunks[i]), word_of(chunk.state),
                fmt::format("{}", chunk.tries), chunk.node, first_line(chunk.why)});

@@ -134,6 +134,16 @@ void make_alpha_finite(float& alpha, SanitizeCounts& counts) {
   ++counts.alpha;
 }
 
+/// Finite colours on both sides of 0.
+void keep_finite(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
+  for (std::size_t i = 0; i < pixels; ++i) {
+    float* pixel = rgba + i * 4;
+    for (int c = 0; c < 3; ++c) make_finite(pixel[c], counts);
+    make_alpha_finite(pixel[3], counts);
+  }
+  flush_smallest(rgba, pixels * 4);
+}
+
 /// The common case, linear Rec.709 with associated alpha. Blocks with nothing to mend are only read; the others take
 /// one pass without branches, so that it vectorises.
 void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
@@ -186,11 +196,12 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
     }
     return;
   }
+  const auto sanitize = encoding.keep_negative ? keep_finite : sanitize_linear;
   const bool straight = encoding.alpha == AlphaKind::straight;
   // Associated integers were multiplied after they had been encoded: divide first, multiply again in linear light.
   const bool divide = encoding.alpha == AlphaKind::associated && (!curve.identity() || encoding.transform);
   if (curve.identity() && !encoding.matrix && !encoding.transform && !straight && encoding.gain == 1)
-    return sanitize_linear(rgba, pixels, counts);
+    return sanitize(rgba, pixels, counts);
 
   for (std::size_t i = 0; i < pixels; ++i) {
     float* pixel = rgba + i * 4;
@@ -215,7 +226,7 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
     if (straight || (divide && pixel[3] > 0))
       for (int c = 0; c < 3; ++c) pixel[c] *= pixel[3];
   }
-  sanitize_linear(rgba, pixels, counts);
+  sanitize(rgba, pixels, counts);
 }
 
 }  // namespace

@@ -33,14 +33,15 @@ struct ColorEncoding {
   double (*formula)(double) = nullptr;         ///< of `formula`: stored value to light
   std::array<std::vector<float>, 3> tables{};  ///< of `tables`: linear values for equally spaced stored values 0…1
   std::optional<Matrix3> matrix;               ///< to Rec.709, when the primaries are others
-  double gain = 1;                             ///< light of the scene ÷ light that is stored, whatever curve and matrix
+  double gain = 1;  ///< light of the scene ÷ light that is stored, whatever curve and matrix
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix
   AlphaKind alpha = AlphaKind::none;
   int max_code = 0;  ///< 255 or 65535 for integers of that many codes; 0: any value
   /// Stored values lie anywhere between codes, most of them in −0.25…1.25: curves are taken from a fine table there.
   bool dense = false;
-  bool data = false;  ///< no colours: values stay as they are stored, if they are finite
-  bool grey = false;  ///< only the first sample of a pixel was read; it stands for all three
+  bool keep_negative = false;  ///< colours below 0 stay, if they are finite
+  bool data = false;           ///< no colours: values stay as they are stored, if they are finite
+  bool grey = false;           ///< only the first sample of a pixel was read; it stands for all three
 };
 
 /// Brings rows of RGBA that hold stored values (integers scaled to 0…1) into the form that Picture::color has. `pixels`

@@ -21,7 +21,7 @@ namespace {
 /// Containers with sound and subtitles. Playlists and the like would read other files.
 constexpr const char* kFormats =
     "mov,mp4,matroska,webm,avi,mpegts,mpeg,ogg,flac,wav,w64,mp3,aac,ac3,eac3,aiff,caf,flv,mxf,opus,srt,ass,webvtt,gif,"
-    "apng,yuv4mpegpipe,asf";
+    "apng,yuv4mpegpipe,asf,nut,ivf,mpegvideo";
 
 constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
 
@@ -100,7 +100,8 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
 
 Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics) {
   AVFormatContext& out = output_.container();
-  std::vector<std::string> left;
+  std::vector<std::string> left, pictures;
+  const int worked_on = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   bool sound = false;
   target_.assign(input_->nb_streams, -1);
   texts_.resize(input_->nb_streams);
@@ -108,6 +109,8 @@ Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, D
     const AVStream& from = *input_->streams[i];
     const AVMediaType kind = from.codecpar->codec_type;
     sound = sound || kind == AVMEDIA_TYPE_AUDIO;
+    if (!sound_only && kind == AVMEDIA_TYPE_VIDEO && static_cast<int>(i) != worked_on)
+      pictures.push_back(stream_name(from, i));
     if (kind == AVMEDIA_TYPE_VIDEO || (sound_only && kind != AVMEDIA_TYPE_AUDIO)) continue;
     AFTERGLOW_TRY(const AVStream* to, add_stream(i));
     const bool timecode = from.codecpar->codec_tag == MKTAG('t', 'm', 'c', 'd');  // told by a tag
@@ -118,6 +121,9 @@ Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, D
   }
   if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
   if (!sound_only) av_dict_copy(&out.metadata, input_->metadata, AV_DICT_DONT_OVERWRITE);
+  if (!pictures.empty())
+    diagnostics.warn(fmt::format("{}: of the pictures of {} one stream is worked on; {} {} left out", name,
+                                 file_.string(), join(pictures), pictures.size() == 1 ? "is" : "are"));
   if (!left.empty())
     diagnostics.warn(fmt::format("{}: {} of {} cannot be held by {} and {} left out", name, join(left), file_.string(),
                                  out.oformat->name, left.size() == 1 ? "is" : "are"));
@@ -153,6 +159,21 @@ void FfmpegCopy::add_chapters() {
   }
 }
 
+/// When it begins. A text that shows already when the range begins is held to that, and one that shows on to its end.
+std::int64_t FfmpegCopy::begin_of(AVPacket& packet, std::int64_t stamp) const {
+  const AVStream& stream = *input_->streams[packet.stream_index];
+  const AVRational unit = stream.time_base;
+  const std::int64_t time = av_rescale_q(stamp, unit, kMicroseconds);
+  if (stream.codecpar->codec_type != AVMEDIA_TYPE_SUBTITLE || packet.duration <= 0) return time;
+  const std::int64_t end = time + av_rescale_q(packet.duration, unit, kMicroseconds);
+  const std::int64_t begin = std::max(time, std::min<std::int64_t>(range_.begin, end));
+  const std::int64_t until = std::min<std::int64_t>(end, range_.end);
+  if (begin >= until || (begin == time && until == end)) return time;
+  packet.pts = packet.dts = av_rescale_q(begin, kMicroseconds, unit);
+  packet.duration = av_rescale_q(until - begin, kMicroseconds, unit);
+  return begin;
+}
+
 Result<void> FfmpegCopy::put(AVPacket& packet) {
   const AVStream& from = *input_->streams[packet.stream_index];
   const int target = target_[static_cast<std::size_t>(packet.stream_index)];
@@ -183,7 +204,7 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
     const std::int64_t stamp = waiting_->dts != AV_NOPTS_VALUE ? waiting_->dts : waiting_->pts;
     const bool wanted = stream < target_.size() && target_[stream] >= 0;
     if (wanted && stamp != AV_NOPTS_VALUE) {
-      const std::int64_t time = av_rescale_q(stamp, input_->streams[stream]->time_base, kMicroseconds);
+      const std::int64_t time = begin_of(*waiting_, stamp);
       if (time >= range_.begin && time < range_.end) {
         if (time - range_.shift >= until) return {};  // later
         if (!texts_[stream] || texts_[stream]->convert(*waiting_)) AFTERGLOW_CHECK(put(*waiting_));

@@ -41,6 +41,7 @@ class FfmpegCopy {
   Result<AVStream*> add_stream(unsigned index);
   Result<void> add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics);
   void add_chapters();
+  std::int64_t begin_of(AVPacket& packet, std::int64_t stamp) const;
   Result<void> put(AVPacket& packet);
   Error cannot_be_read(int code) const;
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMostPackets = 1'000'000;
 constexpr int kMostErrors = 64;  // in a row, before the rest of the file is given up
+
 /// What an H.264 access unit begins with. `instant`: nothing reaches back over it (IDR). `intra`: a picture that
 /// decoding can begin at, though what shows before it, or its parameters, may need what lies before. `other`: no
 /// beginning at all, though streams that refresh themselves bit by bit mark it as one.

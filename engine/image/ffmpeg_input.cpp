@@ -151,15 +151,15 @@ Result<CodecHandle> FfmpegInput::open_decoder(FfmpegErrors& errors, bool careful
   return codec;
 }
 
-int FfmpegInput::read(AVPacket& packet) {
+int FfmpegInput::read(AVPacket& packet, int stream) {
   while (true) {
     av_packet_unref(&packet);  // av_read_frame writes over what it holds
     const int got = av_read_frame(container_, &packet);
     if (got < 0) return got;
-    // Empty packets are frames that an encoder left out; to a decoder they would be the end.
     if (packet.pos >= 0)
       last_ = std::max(last_, static_cast<std::uint64_t>(packet.pos) + static_cast<unsigned>(packet.size));
-    if (packet.stream_index == stream_ && packet.size > 0) {
+    // Empty packets are frames that an encoder left out; to a decoder they would be the end.
+    if (packet.stream_index == stream && packet.size > 0) {
       bytes_->packet_came();
       return 0;
     }

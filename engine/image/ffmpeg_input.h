@@ -36,7 +36,9 @@ class FfmpegInput {
   /// where it tells of each frame whether it is damaged; on several that gets lost. Errors: io.
   Result<CodecHandle> open_decoder(FfmpegErrors& errors, bool careful) const;
   /// The next packet of the stream, in place of what `packet` held: 0, AVERROR_EOF, or another error of FFmpeg.
-  int read(AVPacket& packet);
+  int read(AVPacket& packet) { return read(packet, stream_); }
+  /// The same of another stream.
+  int read(AVPacket& packet, int stream);
   /// Why there is no use in reading on, when that is so: no bytes come, nobody waits for them any more, or the demuxer
   /// reads on and on and finds no packet. It stays so.
   std::optional<Error> given_up() const;

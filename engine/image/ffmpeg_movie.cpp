@@ -16,8 +16,6 @@
 namespace afterglow {
 namespace {
 
-/// Of decoded frames, for going backwards: some ten of 4K, a whole group of pictures of HD.
-
 class FfmpegMovie : public MovieSource {
  public:
   Result<void> open(const MovieRequest& request) {

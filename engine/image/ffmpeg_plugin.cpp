@@ -7,6 +7,7 @@ extern "C" {
 
 #include <fmt/format.h>
 
+#include "core/module_shapes.h"
 #include "image/ffmpeg_encoder.h"
 #include "image/ffmpeg_join.h"
 #include "image/ffmpeg_log.h"
@@ -38,3 +39,5 @@ extern "C" __attribute__((visibility("default"))) const afterglow::FfmpegModule*
   static_cast<void>(quiet);
   return &module;
 }
+
+AFTERGLOW_MODULE_SHAPES

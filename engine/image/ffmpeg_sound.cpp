@@ -93,6 +93,7 @@ class FfmpegSound : public SoundTrack {
       std::transform(samples_.begin() + (from - held_) * kChannels, samples_.begin() + (until - held_) * kChannels,
                      to.begin() + (from - first) * kChannels, held_sample);
     drop_before(first);
+    if (auto reason = input_->given_up()) return *std::move(reason);
     return {};
   }
 
@@ -134,15 +135,6 @@ class FfmpegSound : public SoundTrack {
     whole_ = false;
   }
 
-  bool next_packet() {
-    while (true) {
-      const int got = av_read_frame(&input_->container(), packet_.get());
-      if (got < 0) return false;
-      if (packet_->stream_index == stream_ && packet_->size > 0) return true;
-      av_packet_unref(packet_.get());
-    }
-  }
-
   /// One frame of the decoder at least, unless the file ends.
   void decode_until(std::int64_t until) {
     while (!ended_ && (!anchored_ || end() < until)) {
@@ -151,7 +143,7 @@ class FfmpegSound : public SoundTrack {
         take(*frame_);
         av_frame_unref(frame_.get());
       } else if (got == AVERROR(EAGAIN) && !draining_) {
-        draining_ = !next_packet();
+        draining_ = input_->read(*packet_, stream_) < 0;
         avcodec_send_packet(codec_.get(), draining_ ? nullptr : packet_.get());  // what it cannot take is silent
         av_packet_unref(packet_.get());
       } else if (got == AVERROR_EOF || draining_) {

@@ -50,7 +50,8 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   const bool sound_only = !plan_.audio.empty();
   const auto& from = sound_only ? plan_.audio : plan_.source;
   if (from.empty()) return {};
-  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, plan_.range, plan_.patience, name, diagnostics));
+  const CopyRange& range = sound_only ? plan_.audio_range : plan_.range;
+  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, range, plan_.patience, name, diagnostics));
   if (!sound_only) stream_->disposition = copy_->disposition_of_pictures();
   return {};
 }
@@ -61,7 +62,7 @@ void FfmpegVideoFile::add_time_code() {
   const std::string text = from_source ? copy_->time_code() : plan_.time_code;
   const AVRational rate = rational(plan_.rate);
   const bool later = from_source && plan_.range.begin >= 0;
-  const long long frames = later ? av_rescale_q(std::max(0LL, plan_.range.shift), kCopyClock, av_inv_q(rate)) : 0;
+  const long long frames = later ? av_rescale_q(std::max(0LL, plan_.audio_range.shift), kCopyClock, av_inv_q(rate)) : 0;
   const std::string first = time_code_after(text, frames, plan_.rate);
   if (first.empty()) return;
   av_dict_set(&output_->container().metadata, "timecode", nullptr, 0);

@@ -82,7 +82,7 @@ void HalfColors::take_rows(int begin, int end) {
   const std::size_t count = static_cast<std::size_t>(end - begin) * width_ * 4;
   const Signs signs = signs_of(first, count);
   if (signs.infinite) finite_ = false;
-  if (!signs.any || signs.infinite) return;
+  if (!signs.any || signs.infinite || keep_negative_) return;
   const Below below = hold_at_zero(first, count);
   negative_ += below.zero;
   far_below_ += below.noise;

@@ -13,11 +13,12 @@ namespace afterglow {
 /// finite.
 bool stays_half(const ColorEncoding& encoding);
 
-/// Rows of RGBA as they come from a file: negative colours become 0 as SanitizeCounts says. What is not finite has no
-/// place among half floats. Thread-safe.
+/// Rows of RGBA as they come from a file: negative colours become 0 as SanitizeCounts says, unless they are kept. What
+/// is not finite has no place among half floats. Thread-safe.
 class HalfColors {
  public:
-  HalfColors(std::uint16_t* rgba, int width) : rgba_(rgba), width_(static_cast<std::size_t>(width)) {}
+  HalfColors(std::uint16_t* rgba, int width, bool keep_negative = false)
+      : rgba_(rgba), width_(static_cast<std::size_t>(width)), keep_negative_(keep_negative) {}
 
   void take_rows(int begin, int end);
   bool finite() const { return finite_; }  ///< of all rows that were taken; else they have to be read as floats
@@ -27,6 +28,7 @@ class HalfColors {
  private:
   std::uint16_t* rgba_;
   std::size_t width_;
+  bool keep_negative_;
   std::atomic<bool> finite_ = true;
   std::atomic<std::uint64_t> negative_ = 0, far_below_ = 0;
 };

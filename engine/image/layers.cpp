@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <utility>
 
 #include "core/text.h"
 
@@ -274,10 +275,9 @@ std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const Ch
     if (l->last == own->last && !own->last.empty()) return first(*l) == first(*own) ? 1 : 2;
     return l->group == own->group ? 3 : l->group.empty() ? 4 : 5;
   };
+  const auto place = [&](const Layer* l) { return std::pair(distance(l), unsure && unsure(*l)); };
   std::vector<const Layer*> sorted = all_of(layers);
-  if (unsure) std::ranges::stable_partition(sorted, [&](const Layer* l) { return !unsure(*l); });
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [&](const Layer* a, const Layer* b) { return distance(a) < distance(b); });
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const Layer* a, const Layer* b) { return place(a) < place(b); });
   return sorted;
 }
 

@@ -109,7 +109,7 @@ void fill_in(MovieFacts& facts) {
     taken.emplace_back(what);
   };
   if (!color.rgb && !facts.grey) {
-    if (color.matrix == 0 && !color.rgb) color.matrix = kUnsaid;  // RGB's: not of what is stored
+    if (color.matrix == 0) color.matrix = kUnsaid;  // RGB's: not of what is stored
     take(color.matrix, is_known_matrix(color.matrix), small || color.picture ? (sixty ? 6 : 5) : 1, "matrix");
   }
   const bool primaries_said = color.primaries == 1 || primaries_of(color.primaries).has_value();

@@ -47,7 +47,8 @@ struct MovieFacts {
   bool floating = false;
   int bits = 8;  ///< of a sample
   bool interlaced = false;
-  bool hdr_metadata = false;  ///< it says which display it was made on, or how bright it gets (HDR10)
+  bool pictures_alone = false;  ///< the file has room for nothing else
+  bool hdr_metadata = false;    ///< it says which display it was made on, or how bright it gets (HDR10)
   MovieColor color;
   Rational rate{0, 1};         ///< frames a second, on the average; 0: unknown
   Rational time_base{1, 1};    ///< seconds of a time stamp's unit

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/exception.h"
+#include "core/module_shapes.h"
 #include "core/text.h"
 #include "image/lut_file.h"
 #include "image/lut_taker.h"
@@ -184,3 +185,5 @@ extern "C" __attribute__((visibility("default"))) const afterglow::OcioModule* a
                                                 &afterglow::shader, &afterglow::function,   &afterglow::version};
   return &module;
 }
+
+AFTERGLOW_MODULE_SHAPES

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The module's one symbol.
+#include "core/module_shapes.h"
 #include "image/oiio_compare.h"
 #include "image/oiio_file.h"
 #include "image/oiio_module.h"
@@ -11,3 +12,5 @@ extern "C" __attribute__((visibility("default"))) const afterglow::OiioModule* a
                                                 &afterglow::open_webp_movie, &afterglow::visible_difference_with_oiio};
   return &module;
 }
+
+AFTERGLOW_MODULE_SHAPES

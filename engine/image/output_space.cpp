@@ -22,6 +22,7 @@ namespace {
 constexpr int kMantissaBits = 7, kShift = 23 - kMantissaBits;  // parts of an octave
 constexpr float kSmallest = 0x1p-40f, kLargest = 0x1p10f;      // the brightest that a space holds is below
 constexpr std::uint32_t kMask = (1u << kShift) - 1;
+constexpr int kStepsBelow = 4096;  // of light below 0, where codes stand for such
 
 std::uint32_t part_of(float light) { return std::bit_cast<std::uint32_t>(light) >> kShift; }
 
@@ -48,6 +49,10 @@ OutputSpace::OutputSpace(const InputSpace& space)
   for (std::uint32_t part = part_of(kSmallest); part <= part_of(kLargest); ++part)
     table_.push_back(
         static_cast<float>(inverse_of(space.to_linear, static_cast<double>(std::bit_cast<float>(part << kShift)))));
+  darkest_ = std::min(static_cast<float>(space.to_linear(0)), 0.0f);
+  for (int i = 0; darkest_ < 0 && i <= kStepsBelow; ++i)
+    below_.push_back(static_cast<float>(
+        inverse_of(space.to_linear, static_cast<double>(darkest_) * (kStepsBelow - i) / kStepsBelow)));
   const Matrix3 matrix = inverse(to_rec709(space.primaries));
   if (!nearly_equal(matrix, kIdentity, 1e-6)) matrix_ = matrix;
 }
@@ -62,7 +67,15 @@ const OutputSpace& OutputSpace::of(const InputSpace& space) {
   return *one;
 }
 
+float OutputSpace::stored_below(float light) const {
+  if (below_.empty() || light <= darkest_) return below_.empty() ? of_zero_ : 0.0f;
+  const float position = (1 - light / darkest_) * kStepsBelow;
+  const auto step = std::min(static_cast<std::size_t>(position), below_.size() - 2);
+  return below_[step] + (below_[step + 1] - below_[step]) * (position - static_cast<float>(step));
+}
+
 float OutputSpace::stored_value(float light) const {
+  if (light < 0) return stored_below(light);
   if (!(light > kSmallest)) return light > 0 ? of_zero_ + (table_.front() - of_zero_) * (light / kSmallest) : of_zero_;
   if (light >= kLargest) return 1;
   const std::size_t part = part_of(light) - part_of(kSmallest);
@@ -107,6 +120,12 @@ __attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(const floa
     const __m256 near_zero = _mm256_add_ps(of_zero, _mm256_mul_ps(rise, dark));
     value = _mm256_blendv_ps(near_zero, value, _mm256_cmp_ps(light, smallest, _CMP_GT_OQ));
     _mm256_storeu_ps(stored, _mm256_blend_ps(value, light, 0x88));  // alpha stays
+    const int below = _mm256_movemask_ps(_mm256_cmp_ps(light, _mm256_setzero_ps(), _CMP_LT_OQ)) & 0x77;
+    if (below == 0 || below_.empty()) continue;
+    alignas(32) std::array<float, 8> lights;
+    _mm256_store_ps(lights.data(), light);
+    for (std::size_t k = 0; k < lights.size(); ++k)
+      if ((below >> k & 1) != 0) stored[k] = stored_below(lights[k]);
   }
   return i;
 }

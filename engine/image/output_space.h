@@ -25,7 +25,7 @@ class OutputSpace {
   bool linear() const { return linear_; }
   const Chromaticities& primaries() const { return primaries_; }
   /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
-  /// is held at its ends, NaN at that of 0. `stored` may be `rgba` itself.
+  /// is held at its ends, which may lie below 0, NaN at that of 0. `stored` may be `rgba` itself.
   void encode(const float* rgba, std::size_t pixels, float* stored) const;
   /// The same colours, bit for bit, of half floats; what stands at the place of alpha has no meaning.
   void encode_colors(const std::uint16_t* rgba, std::size_t pixels, float* stored) const;
@@ -33,6 +33,7 @@ class OutputSpace {
  private:
   explicit OutputSpace(const InputSpace& space);
   float stored_value(float light) const;
+  float stored_below(float light) const;
   std::size_t encode_pairs(const float* rgba, std::size_t pixels, float* stored) const;
 
   const char* name_;
@@ -41,6 +42,9 @@ class OutputSpace {
   std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others
   float of_zero_ = 0;              ///< what light 0 is stored as
   std::vector<float> table_;       ///< stored values at the ends of equal parts of octaves
+  /// Logarithms of film and cameras have codes for light below 0: what those from `darkest_` to 0 are stored as.
+  float darkest_ = 0;
+  std::vector<float> below_;
   /// Stored values of all half floats, by their bits. Made when they are first asked for.
   const std::vector<float>& of_halves() const;
   mutable std::once_flag halves_made_;

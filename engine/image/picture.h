@@ -27,7 +27,7 @@ inline constexpr float kSmallestColor = std::numeric_limits<float>::min();
 struct SanitizeCounts {
   static constexpr float kNoise = 0.01f;  ///< what ringing and lossy compression take below 0
   std::uint64_t nan = 0;                  ///< NaN colour samples set to 0
-  std::uint64_t negative = 0;             ///< negative colour samples set to 0
+  std::uint64_t negative = 0;             ///< negative colour samples set to 0, where they are not kept
   std::uint64_t far_below = 0;            ///< those of them below -kNoise
   std::uint64_t too_large = 0;            ///< colour samples above kLargestColor (or +infinity) set to it
   std::uint64_t alpha = 0;                ///< non-finite alpha samples (NaN and ±infinity) set to 1
@@ -39,7 +39,8 @@ struct FileFacts;  // format, pixel type, metadata, …: image/metadata.h; kept 
 
 /// One frame, ready for a stack. All images cover `data_window` and have its size.
 struct Picture {
-  Image color;  ///< RGBA; scene-linear Rec.709, alpha associated (premultiplied), finite, ≥ 0
+  /// RGBA; scene-linear Rec.709, alpha associated (premultiplied), finite, ≥ 0 unless ReadOptions::keep_negative.
+  Image color;
   /// Auxiliary inputs by name. "depth": 1 channel, view-space distance in scene units (background 1e10), or device
   /// depth as stored; "normal": 3 channels as stored; "motion": 2 channels, how far the pixel's content moves in
   /// one frame, in pixels, x to the right and y down; "layer:NAME": up to 4 channels as stored, finite. Only those that

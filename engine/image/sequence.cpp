@@ -109,6 +109,12 @@ std::string folder_of_pattern(std::string text) {
   return text;
 }
 
+/// "1", "1-24" or "1-47x2".
+std::string range_text(int first, int last, int step) {
+  if (first == last) return fmt::format("{}", first);
+  return step == 1 ? fmt::format("{}-{}", first, last) : fmt::format("{}-{}x{}", first, last, step);
+}
+
 bool looks_like_place(const std::string& folder) {
   return folder.find('#') != std::string::npos || folder.find("%0") != std::string::npos ||
          folder.find("%d") != std::string::npos;
@@ -141,6 +147,19 @@ Result<std::vector<int>> parse_frames(const std::string& text) {
     if (frames.size() > kMaxFrames) return bad_frames(text, fmt::format("more than {} frames", kMaxFrames));
   }
   return frames;
+}
+
+std::string frames_text(const std::vector<int>& frames) {
+  std::string out;
+  for (std::size_t i = 0; i < frames.size();) {
+    const int step = i + 1 < frames.size() ? frames[i + 1] - frames[i] : 1;
+    std::size_t last = i;
+    while (step > 0 && last + 1 < frames.size() && frames[last + 1] - frames[last] == step) ++last;
+    if (step != 1 && last < i + 2) last = i;  // two frames that are far apart are no range
+    out += (out.empty() ? "" : ",") + range_text(frames[i], frames[last], step);
+    i = last + 1;
+  }
+  return out;
 }
 
 fs::path Pattern::file(int frame) const {

@@ -15,6 +15,8 @@ namespace afterglow {
 
 /// Frames in the order given, without repetition. Errors: usage. At most 1,000,000 frames.
 Result<std::vector<int>> parse_frames(const std::string& text);
+/// "1-24,30,32-40x2": what parse_frames makes the same frames of. Frames in their order, each once.
+std::string frames_text(const std::vector<int>& frames);
 
 /// A file name with one place for a frame number, or a plain file.
 struct Pattern {

@@ -33,7 +33,8 @@ class CodeEncoder {
     return code;
   }
 
-  /// The encoder for sRGB with 255, 1023, 4095 or 65535 as its largest code; made once, kept for the life of the process.
+  /// The encoder for sRGB with 255, 1023, 4095 or 65535 as its largest code; made once, kept for the life of the
+  /// process.
   static const CodeEncoder& srgb(int max_code);
 
  private:

@@ -48,7 +48,8 @@ struct VideoPlan {
   Rational rate{24, 1};          ///< frames a second, on the average
   Rational time_base{1, 24};     ///< seconds of a time stamp's unit
   std::filesystem::path audio;   ///< sound from here: --audio
-  CopyRange range;               ///< of both
+  CopyRange range;               ///< of the source
+  CopyRange audio_range;         ///< of the other file, whose time is that since the source's first frame
   std::filesystem::path source;  ///< the video that is worked on: its other streams are copied; empty: none
   std::string time_code;         ///< of the first picture; empty: the source's, if it has one
   Patience patience{};           ///< with these and with pieces

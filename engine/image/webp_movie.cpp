@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "image/container_bytes.h"
 
 namespace afterglow {
 namespace {
@@ -21,21 +22,18 @@ struct WebpDeleter {
   void operator()(WebPAnimDecoder* decoder) const { WebPAnimDecoderDelete(decoder); }
 };
 
-std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
-  return value;
-}
-
 /// Cuts off what is no whole chunk, and says so in the head, since the library takes whole files alone. True if there
 /// was something to cut.
 bool cut_to_whole_chunks(std::string& bytes) {
   constexpr std::size_t kHead = 12, kChunkHead = 8;  // "RIFF" SIZE "WEBP"; NAME SIZE
   if (bytes.size() < kHead) return false;
-  const std::size_t told = std::size_t{little_endian(bytes, 4)} + kChunkHead;
+  const auto number_at = [&](std::size_t at) {
+    return std::size_t{little_endian(reinterpret_cast<const unsigned char*>(&bytes[at]), 4)};
+  };
+  const std::size_t told = number_at(4) + kChunkHead;
   std::size_t end = kHead;
   while (end + kChunkHead <= std::min(told, bytes.size())) {
-    const std::size_t size = little_endian(bytes, end + 4), padded = kChunkHead + size + size % 2;
+    const std::size_t size = number_at(end + 4), padded = kChunkHead + size + size % 2;
     if (padded > bytes.size() - end) break;
     end += padded;
   }
@@ -82,6 +80,7 @@ class WebpMovie : public MovieSource {
     const std::uint32_t flags = WebPDemuxGetI(demuxer.get(), WEBP_FF_FORMAT_FLAGS);
     facts_.container = facts_.codec = "webp";
     facts_.pixel_format = "rgba";
+    facts_.pictures_alone = true;
     facts_.stored = facts_.size = {static_cast<int>(WebPDemuxGetI(demuxer.get(), WEBP_FF_CANVAS_WIDTH)),
                                    static_cast<int>(WebPDemuxGetI(demuxer.get(), WEBP_FF_CANVAS_HEIGHT))};
     AFTERGLOW_CHECK(check_sides({0, 0, facts_.size.width, facts_.size.height}, "canvas", request.limits, request.file));

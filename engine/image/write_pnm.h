@@ -8,8 +8,8 @@
 
 namespace afterglow {
 
-/// The display window. PPM and PAM: integers, big-endian; PAM has straight alpha. PFM: floats, little-endian, scene-linear,
-/// rows from the bottom. Failures are found in `out`.
+/// The display window. PPM and PAM: integers, big-endian; PAM has straight alpha. PFM: floats, little-endian,
+/// scene-linear, rows from the bottom. Failures are found in `out`.
 Result<void> write_pnm(const Picture& picture, OutputKind kind, const StripForm& form, OutputFile& out);
 
 }  // namespace afterglow

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/module_shapes.h"
 #include "image/movie.h"
 #include "play/sound_device.h"
 
@@ -71,3 +72,5 @@ afterglow_alsa_open() {
   AFTERGLOW_CHECK(device->open());
   return std::unique_ptr<afterglow::SoundDevice>(std::move(device));
 }
+
+AFTERGLOW_MODULE_SHAPES

@@ -53,18 +53,6 @@ std::string clip_key(const std::string& input) {
 
 }  // namespace
 
-std::string frames_text(const std::vector<int>& frames) {
-  std::string out;
-  for (std::size_t i = 0; i < frames.size();) {
-    std::size_t end = i + 1;
-    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
-    if (!out.empty()) out += ", ";
-    out += end - i == 1 ? std::to_string(frames[i]) : fmt::format("{}-{}", frames[i], frames[end - 1]);
-    i = end;
-  }
-  return out;
-}
-
 Result<void> Footage::add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted,
                                    Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));

@@ -133,7 +133,4 @@ class Footage : public std::enable_shared_from_this<Footage> {
   int proxy_ = 1;
 };
 
-/// "3, 7-9, 12".
-std::string frames_text(const std::vector<int>& frames);
-
 }  // namespace afterglow

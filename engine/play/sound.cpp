@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSoundBlock = SoundTrack::kRate / 100;  // frames of samples that are written at a time
 constexpr double kAhead = 0.2 * SoundTrack::kRate;
-/// No device is further off than this; one that takes everything at once (a file, nothing at all) is held to it.
+/// No device is further off than this. One that takes everything at once (a file, nothing at all) is held to the clock.
 constexpr double kFastest = 1.01;
 constexpr double kShortestLoop = 0.05;
 
@@ -179,7 +179,8 @@ Result<void> Sound::read_on(std::span<float> samples, const std::optional<SoundL
 /// One block; false: the device is gone.
 bool Sound::write_some(const Wish& wish) {
   const double now = clock_();
-  pace_.frames = std::min(kAhead, pace_.frames + (now - pace_.at) * kFastest * SoundTrack::kRate);
+  const double fastest = pace_.by_clock ? 1 : kFastest;
+  pace_.frames = std::min(kAhead, pace_.frames + (now - pace_.at) * fastest * SoundTrack::kRate);
   pace_.at = now;
   if (pace_.frames < kSoundBlock) {
     std::unique_lock lock(mutex_);
@@ -209,7 +210,9 @@ bool Sound::write_some(const Wish& wish) {
     return false;
   }
   pace_.frames -= kSoundBlock;
-  const double delay = device_->delay();
+  // Devices that take everything at once say that nothing waits. What is written ahead of the clock is not heard yet.
+  const double ahead = kAhead - pace_.frames, said = device_->delay(), delay = std::max(said, ahead);
+  pace_.by_clock = ahead > said + 2 * kSoundBlock;
   double seconds = (static_cast<double>(cursor_) - delay) / SoundTrack::kRate;
   // What was written before the loop's beginning is heard up to its end.
   const bool before = around_ && delay > static_cast<double>(since_);

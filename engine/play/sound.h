@@ -98,6 +98,7 @@ class Sound {
   float gain_ = 0;                   ///< of the last sample
   struct Pace {
     double at = 0, frames = 0;
+    bool by_clock = false;  ///< the device has none
   } pace_;
   std::thread thread_;
 };

@@ -63,7 +63,7 @@ struct View {
   bool fit = true;      ///< the whole picture, as large as the window allows; `zoom` and `center` rest meanwhile
   double zoom = 1;      ///< screen pixels for each pixel of the picture
   Point center;         ///< of the picture, in the middle of the window
-  double exposure = 0;  ///< EV, in scene-linear light before encoding for the screen
+  double exposure = 0;  ///< EV, ±kMostExposure, in scene-linear light before encoding for the screen
   double gamma = 1;     ///< light behind the exposure, to the power of 1/gamma; kLeastGamma…kMostGamma
   ViewChannel channel = ViewChannel::color;
   bool as_display = true;  ///< where a display is named, light is shown as its table says; else as sRGB
@@ -81,7 +81,7 @@ struct View {
   friend bool operator==(const View&, const View&) = default;
 };
 
-inline constexpr double kLeastGamma = 0.1, kMostGamma = 10;
+inline constexpr double kMostExposure = 16, kLeastGamma = 0.1, kMostGamma = 10;
 
 /// Of a picture, in its coordinates.
 struct PictureArea {

@@ -24,7 +24,8 @@ constexpr Names kAbsent[] = {
     {"", " coroutine xpcall collectgarbage warn utf8 next getfenv ", "presets have the plain parts of Lua alone"},
     {"math", " random randomseed ",
      "every run must give the same pictures; make numbers of t.frame, g.frame or a setting"},
-    {"string", " find match gmatch gsub ", "patterns may run without end; string.sub and comparisons are there"},
+    {"string", " match gmatch gsub ",
+     "patterns may run without end; string.find (of plain text) and string.sub are there"},
     {"string", " dump pack unpack packsize ", "presets have the plain parts of Lua alone"},
     {"table", " move ", "a loop does the same"},
 };

@@ -76,7 +76,9 @@ void fail_unknown(TableReader& table, const EffectSchema& schema, const TableRea
   }
   std::vector<std::string> near = names;
   near.insert(near.end(), others.begin(), others.end());
-  table.fail(failure(fmt::format("{} '{}' has no setting '{}'", what, schema.name, tidy_message(key.name, 60)),
+  const std::string hides =
+      schema.shadowed.empty() ? "" : fmt::format(" ({}, which hides another one)", schema.file.string());
+  table.fail(failure(fmt::format("{} '{}'{} has no setting '{}'", what, schema.name, hides, tidy_message(key.name, 60)),
                      {key.name}, join(names), nearest_name(key.name, near)));
 }
 

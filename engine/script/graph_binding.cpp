@@ -3,18 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
-#include <map>
 
-#include "core/file.h"
-#include "core/inside.h"
-#include "core/pack.h"
 #include "core/text.h"
-#include "image/cryptomatte.h"
 #include "script/filter_reader.h"
+#include "script/graph_calls.h"
 #include "script/object.h"
-#include "script/ocio.h"
 #include "script/runtime.h"
 #include "script/table_reader.h"
 
@@ -24,16 +18,6 @@ namespace {
 struct GraphHandle {
   std::uint64_t build;
 };
-
-// The builder behind argument 1. `call` is how it should have been written.
-GraphBuilder& graph_of(lua_State* lua, const char* call) {
-  const GraphHandle* handle = to_object<GraphHandle>(lua, 1, kGraphKind);
-  if (!handle)
-    throw failure(fmt::format("the first argument is {}, not the graph", read_value(lua, 1).shown()), {}, call);
-  GraphBuilder* graph = Runtime::of(lua).graph;
-  if (!graph || graph->build() != handle->build) throw failure("the graph can only be used while its build runs");
-  return *graph;
-}
 
 CallPlace place_of(lua_State* lua) {
   const Sandbox& box = Sandbox::of(lua);
@@ -188,158 +172,6 @@ int graph_input(lua_State* lua) {
   return 1;
 }
 
-// The file that g:lookup and g:image are given; a failure at the key of the call.
-std::filesystem::path read_file_key(lua_State* lua, TableReader& table, const char* function) {
-  const auto name = table.text("file");
-  if ((!name || name->empty()) && !table.failed())
-    table.fail(failure(fmt::format("{} needs 'file', the name of a file", table.what()), {"file"}));
-  table.finish(function);
-  return find_asset(lua, table.what(), *name);
-}
-
-int graph_lookup(lua_State* lua) {
-  GraphBuilder& graph = graph_of(lua, "g:lookup { file = … }");
-  TableReader table(lua, 2, fmt::format("effect '{}': g:lookup", graph.entry().effect));
-  table.allow({"correction", "file"}, false);
-  const auto correction = table.text("correction");
-  const auto file = read_file_key(lua, table, "lookup");
-  const LoadedLut& loaded = load_lut(lua, file, correction.value_or(""));
-  lua_createtable(lua, 0, 3);
-  lua_pushboolean(lua, loaded.unit);
-  lua_setfield(lua, -2, "unit");
-  push_image(lua, graph.data(file.filename().string(), loaded.table));
-  lua_setfield(lua, -2, "table");
-  lua_createtable(lua, static_cast<int>(loaded.steps.size()), 0);
-  for (std::size_t i = 0; i < loaded.steps.size(); ++i) {
-    const LutStep& step = loaded.steps[i];
-    lua_createtable(lua, 0, 3);
-    const std::pair<const char*, int> fields[] = {
-        {"kind", static_cast<int>(step.kind)}, {"row", step.row}, {"size", step.size}};
-    for (const auto& [name, value] : fields) {
-      lua_pushinteger(lua, value);
-      lua_setfield(lua, -2, name);
-    }
-    lua_rawseti(lua, -2, static_cast<lua_Integer>(i) + 1);
-  }
-  lua_setfield(lua, -2, "steps");
-  return 1;
-}
-
-// { shader = name, table = image or nil }: the pass is the effect's.
-int graph_ocio(lua_State* lua) {
-  GraphBuilder& graph = graph_of(lua, "g:ocio { config = … }");
-  TableReader table(lua, 2, fmt::format("effect '{}': g:ocio", graph.entry().effect));
-  table.allow({"config", "display", "from", "inverse", "looks", "to", "view"}, false);
-  const auto text = [&](const char* key) { return table.text(key).value_or(""); };
-  const auto to = table.text("to");
-  OcioRequest request{.config = {},
-                      .from = text("from"),
-                      .display = text("display"),
-                      .view = text("view"),
-                      .to = to.value_or(""),
-                      .to_space = to.has_value(),
-                      .looks = text("looks"),
-                      .inverse = table.boolean("inverse").value_or(false)};
-  const std::string config = text("config");
-  table.finish("ocio");
-  const LoadedOcio& loaded = load_ocio(lua, table.what(), config, std::move(request));
-  lua_createtable(lua, 0, 2);
-  lua_pushlstring(lua, loaded.shader.data(), loaded.shader.size());
-  lua_setfield(lua, -2, "shader");
-  if (loaded.table) {
-    push_image(lua, graph.data(loaded.config.filename().string(), loaded.table));
-    lua_setfield(lua, -2, "table");
-  }
-  return 1;
-}
-
-int graph_image(lua_State* lua) {
-  GraphBuilder& graph = graph_of(lua, "g:image { file = … }");
-  TableReader table(lua, 2, fmt::format("effect '{}': g:image", graph.entry().effect));
-  table.allow({"alpha", "file", "raw"}, false);
-  const bool alpha = table.boolean("alpha").value_or(false), raw = table.boolean("raw").value_or(false);
-  const auto file = read_file_key(lua, table, "image");
-  auto picture = load_picture(lua, file, raw);
-  if (alpha && picture->opaque)
-    Runtime::of(lua).box->diagnostics->warn_once(
-        "no alpha " + file.string(),
-        fmt::format("effect '{}': {} has no alpha; it counts as 1 everywhere", graph.entry().name, file.string()));
-  push_image(lua, graph.data(file.filename().string(), std::move(picture)));
-  return 1;
-}
-
-// The manifest of a cryptomatte in a file beside the picture; what cannot be read is warned about.
-std::map<std::string, std::uint32_t> manifest_beside(lua_State* lua, const std::filesystem::path& picture,
-                                                     const Cryptomatte& cryptomatte) {
-  constexpr std::size_t kMost = 64u << 20;  // bytes
-  if (cryptomatte.manifest_file.empty() || picture.empty()) return {};
-  const auto warn = [&](const std::string& why) {
-    Runtime::of(lua).box->diagnostics->warn_once(
-        "manifest " + cryptomatte.layer,
-        fmt::format("{}: the manifest '{}' of the cryptomatte '{}' {}; ids are made of "
-                    "the names themselves",
-                    picture.string(), tidy_message(cryptomatte.manifest_file, 100), cryptomatte.layer, why));
-    return std::map<std::string, std::uint32_t>();
-  };
-  const std::filesystem::path folder = picture.has_parent_path() ? picture.parent_path() : ".";
-  const std::filesystem::path file = folder / cryptomatte.manifest_file;
-  if (!is_safe_entry(cryptomatte.manifest_file, 8) || !lies_in(file, folder)) return warn("lies outside of its folder");
-  Runtime::of(lua).depends.beside.insert(file);
-  FileRecord* record = Runtime::of(lua).path.record.get();
-  if (!is_file(file, record)) return warn("is not there");
-  const auto text = read_file(file, kMost, record);
-  if (!text) return warn("cannot be read");
-  auto manifest = read_manifest(*text, cryptomatte.layer);
-  if (!manifest) throw failure(manifest.error().message);
-  return std::move(*manifest);
-}
-
-// The ids of the objects that a cryptomatte's names stand for, as floats. Names that the picture's manifest lacks are
-// warned about: they cover nothing. So are those that a picture without one has not, once its pixels are there.
-int graph_cryptomatte(lua_State* lua) {
-  constexpr std::size_t kMost = 8;
-  GraphBuilder& graph = graph_of(lua, "g:cryptomatte { layer = …, names = … }");
-  TableReader table(lua, 2, fmt::format("effect '{}': g:cryptomatte", graph.entry().effect));
-  table.allow({"layer", "names"}, false);
-  const std::string layer = table.text("layer").value_or(""), names = table.text("names").value_or("");
-  table.finish("cryptomatte");
-  const BuildContext& context = graph.context();
-  std::map<std::string, std::uint32_t> manifest;
-  for (const auto& [metadata, file] :
-       {std::pair(context.metadata, context.picture), {context.matte_metadata, context.mattes}}) {
-    if (!metadata) continue;
-    auto found = find_cryptomatte(*metadata, layer);
-    if (!found) throw failure(found.error().message);
-    if (!*found) continue;
-    const Sandbox::Pause pause(*Runtime::of(lua).box);
-    manifest = (*found)->manifest.empty() ? manifest_beside(lua, file, **found) : std::move((*found)->manifest);
-    break;
-  }
-  std::vector<std::string> known;
-  for (const auto& [name, id] : manifest) known.push_back(name);
-  lua_createtable(lua, kMost, 0);
-  int count = 0;
-  for (const auto& name : cryptomatte_names(names)) {
-    if (count == static_cast<int>(kMost))
-      throw failure(fmt::format("effect '{}': more than {} names of a cryptomatte", graph.entry().effect, kMost), {},
-                    "further ones in a second mask, added by +");
-    const auto given = manifest.find(name);
-    if (given == manifest.end() && !manifest.empty()) {
-      const std::string nearest = nearest_name(name, known);
-      Runtime::of(lua).box->diagnostics->warn_once(
-          "cryptomatte " + layer + " " + name,
-          fmt::format("effect '{}': the cryptomatte '{}' has no '{}'{}", graph.entry().name, layer,
-                      tidy_message(name, 100), nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-      continue;
-    }
-    const std::uint32_t id = given == manifest.end() ? cryptomatte_id(name) : given->second;
-    if (given == manifest.end()) Runtime::of(lua).depends.objects.push_back({layer, name, id});
-    lua_pushnumber(lua, std::bit_cast<float>(id));
-    lua_rawseti(lua, -2, ++count);
-  }
-  return 1;
-}
-
 int graph_skip(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:skip(\"reason\")");
   const Value reason = read_value(lua, 2);
@@ -402,6 +234,15 @@ int image_equal(lua_State* lua) {
 }
 
 }  // namespace
+
+GraphBuilder& graph_of(lua_State* lua, const char* call) {
+  const GraphHandle* handle = to_object<GraphHandle>(lua, 1, kGraphKind);
+  if (!handle)
+    throw failure(fmt::format("the first argument is {}, not the graph", read_value(lua, 1).shown()), {}, call);
+  GraphBuilder* graph = Runtime::of(lua).graph;
+  if (!graph || graph->build() != handle->build) throw failure("the graph can only be used while its build runs");
+  return *graph;
+}
 
 void open_graph_binding(lua_State* lua) {
   push_kind(lua, kGraphKind);

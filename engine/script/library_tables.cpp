@@ -71,6 +71,28 @@ int string_rep(lua_State* lua) {
   return 1;
 }
 
+// Lua's own without patterns.
+int string_find(lua_State* lua) {
+  std::size_t size = 0, wanted_size = 0;
+  const char *text = luaL_checklstring(lua, 1, &size), *wanted = luaL_checklstring(lua, 2, &wanted_size);
+  const std::string_view in(text, size), what(wanted, wanted_size);
+  if (!lua_toboolean(lua, 4) && what.find_first_of("^$*+?.([%-") != std::string_view::npos)
+    throw failure(fmt::format("string.find: '{}' is a pattern, which may run without end", tidy_message(wanted, 60)),
+                  {}, "plain text; with true behind it every sign stands for itself: text:find(\"a.b\", 1, true)");
+  Sandbox::of(lua).charge(size / 8);
+  lua_Integer from = luaL_optinteger(lua, 3, 1);
+  if (from < 0) from = std::max<lua_Integer>(static_cast<lua_Integer>(size) + from + 1, 1);
+  const std::size_t first = from < 1 ? 0 : static_cast<std::size_t>(from) - 1;
+  const std::size_t at = first > size ? std::string_view::npos : in.find(what, first);
+  if (at == std::string_view::npos) {
+    lua_pushnil(lua);
+    return 1;
+  }
+  lua_pushinteger(lua, static_cast<lua_Integer>(at) + 1);
+  lua_pushinteger(lua, static_cast<lua_Integer>(at + what.size()));
+  return 2;
+}
+
 // ---- table: like Lua's, on the table itself (no metamethods, whose loops could run unseen), and counted
 
 lua_Integer length(lua_State* lua) {
@@ -180,6 +202,7 @@ void push_string_library(lua_State* lua) {
   lua_rotate(lua, -3, 1);
   lua_setfield(lua, -3, "rep");
   lua_setfield(lua, -2, "format");
+  set(lua, "find", &native<string_find, "find">);
   name_absent(lua, "string");
   make_read_only(lua);
   // Methods of strings come from the same table, and nobody may replace them.

@@ -302,7 +302,7 @@ namespace {
 /// What other languages call the library's types of settings, and masks, which are not written as effects are.
 std::string elsewhere(const Runtime& runtime, const std::string& name) {
   static const std::map<std::string, std::string> kTypes{{"boolean", "bool"}, {"colour", "color"}, {"integer", "int"},
-                                                         {"number", "float"}, {"string", "text"},  {"vec4", "color"}};
+                                                         {"number", "float"}, {"string", "text"},  {"vec4", "vec3"}};
   if (const auto found = kTypes.find(name); found != kTypes.end()) return found->second;
   const auto masks = effect_names(runtime.path, ScriptKind::mask);
   return std::ranges::find(masks, name) == masks.end() ? "" : "mask." + name;
@@ -332,8 +332,9 @@ int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
     names.insert(names.end(), effects.begin(), effects.end());
     std::string nearest = kind == ScriptKind::effect ? elsewhere(runtime, name) : "";
     if (nearest.empty()) nearest = nearest_name(name, names);
-    const bool of_effect = std::ranges::find(effects, nearest) != effects.end();
-    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(of_effect ? effects : names),
+    const auto library = library_names();
+    const bool of_library = std::ranges::find(library, nearest) != library.end();
+    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(of_library ? names : effects),
                   nearest);
   }
   // An installation may be made of links; what comes with a preset may not reach out of its folder.

@@ -18,6 +18,7 @@
 #include "shader/give_values.h"
 #include "shader/glsl.h"
 #include "shader/guard_loops.h"
+#include "shader/held_divisors.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
 #include "shader/loop_places.h"
@@ -136,6 +137,10 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   }
   // Behind what makes straight code of loops: most indices are constants then.
   AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
+  if (auto module = parse(kernel.spirv)) {
+    hold_divisors(*module);
+    kernel.spirv = module->join();
+  }
   if (desc.config.defeat_uniform_inlining) kernel.spirv = defeat_uniform_inlining(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;

@@ -48,12 +48,13 @@ constexpr std::array kForeign{
     Foreign{"asuint", "floatBitsToUint"},
     Foreign{"asint", "floatBitsToInt"},
     Foreign{"countbits", "bitCount"},
-    Foreign{"tex2D", "fetch_linear(image, position in texels)"},
-    Foreign{"texture2D", "fetch_linear(image, position in texels)"},
-    Foreign{"Sample", "fetch_linear(image, position in texels)"},
-    Foreign{"SampleLevel", "fetch_linear(image, position in texels)"},
+    Foreign{"tex2D", "texture(image, position from 0 to 1)"},
+    Foreign{"texture2D", "texture(image, position from 0 to 1)"},
+    Foreign{"Sample", "texture(image, position from 0 to 1)"},
+    Foreign{"SampleLevel", "texture(image, position from 0 to 1)"},
     Foreign{"Texture2D", "uniform sampler2D"},
     Foreign{"static", "const"},
+    Foreign{"groupshared", "shared"},
     Foreign{"constexpr", "const"},
 };
 

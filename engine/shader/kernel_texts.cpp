@@ -15,9 +15,13 @@ AssembledKernel::UnsetVariable::Role role_of(Unset::Kind kind) {
 }
 
 /// Functions of GLSL that are the prelude's: a sampler interpolates or not, as the device is told for the engine's own
-/// reads.
+/// reads, and drivers fold constants in ways of their own.
 NameMap names_of_prelude() {
-  return {{"texture", {"ag_texture"}}, {"textureLod", {"ag_texture"}}, {"textureOffset", {"ag_texture_offset"}}};
+  return {{"texture", {"ag_texture"}},
+          {"textureLod", {"ag_texture"}},
+          {"textureOffset", {"ag_texture_offset"}},
+          {"unpackHalf2x16", {"ag_unpack_half"}},
+          {"packSnorm4x8", {"ag_pack_snorm"}}};
 }
 
 NewName new_name(const std::string& prefix, const GlobalName& name) {

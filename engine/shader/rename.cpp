@@ -2,6 +2,8 @@
 #include "shader/rename.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "shader/give_values.h"
 #include "shader/macro_arguments.h"
@@ -49,12 +51,13 @@ class FieldFinder {
   int depth_ = 0;
 };
 
-/// The reader of `fetch ( image` at token i, or none.
+/// The reader of `fetch ( image ,` or `fetch ( image )` at token i, or none.
 StorageReaders::const_iterator reader_of(const std::vector<Token>& tokens, std::size_t i,
                                          const StorageReaders& readers) {
   if (readers.empty() || i + 3 >= tokens.size() || !is_reading_function(tokens[i].text) || !tokens[i + 1].is("("))
     return readers.end();
-  return readers.find(tokens[i + 2].text);
+  // Of anything else the compiler says what is wrong with it.
+  return tokens[i + 3].is(",") || tokens[i + 3].is(")") ? readers.find(tokens[i + 2].text) : readers.end();
 }
 
 /// Is tokens[i] given to a macro that makes the name of a field of it?
@@ -145,11 +148,20 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
 }
 
 std::string original_names(std::string_view message) {
-  constexpr std::string_view kMarks = "slr";           // of a stage, a library, an input that is read as storage
-  constexpr std::string_view kTexture = "ag_texture";  // what texture() becomes
+  constexpr std::string_view kMarks = "slr";  // of a stage, a library, an input that is read as storage
+  // What functions of GLSL become in kernels.
+  using Names = std::pair<std::string_view, std::string_view>;
+  constexpr std::array kOfPrelude{Names{"ag_texture", "texture"}, Names{"ag_unpack_half", "unpackHalf2x16"},
+                                  Names{"ag_pack_snorm", "packSnorm4x8"}};
   std::string out;
   for (std::size_t i = 0; i < message.size();) {
-    if (message.substr(i).starts_with(kTexture)) i += kTexture.find('t');
+    const auto known = std::ranges::find_if(
+        kOfPrelude, [&](const Names& names) { return message.substr(i).starts_with(names.first); });
+    if (known != kOfPrelude.end()) {
+      out += known->second;
+      i += known->first.size();
+      continue;
+    }
     if (message.substr(i, 3) == "ag_" && i + 4 < message.size() && kMarks.find(message[i + 3]) != kMarks.npos) {
       std::size_t end = i + 4;
       while (end < message.size() && message[end] >= '0' && message[end] <= '9') ++end;

@@ -135,9 +135,15 @@ class ShaderScanner {
       if (token().is_identifier()) error.message += " (macros that make declarations are not supported)";
       return error;
     }
-    ++at_;  // the type
+    const Token type = token();
+    ++at_;
     while (token().is("[")) at_ = after_closing(code_, at_);
     if (!token().is_identifier()) return fail(line(), "a declaration was expected here");
+    if (token(1).is_identifier()) {  // "static float k"
+      const std::string_view instead = in_glsl(type.text);
+      return fail(type, fmt::format("'{}' is no word of GLSL before a declaration{}", type.text,
+                                    instead.empty() ? "" : fmt::format("; write {}", instead)));
+    }
     if (token(1).is("(")) return function();
     return variables(is_const);
   }

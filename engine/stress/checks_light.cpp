@@ -82,7 +82,8 @@ double gain_of(const Image& before, const Image& after, bool growth_alone) {
   double worst = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double change = (b[c] - a[c]) / (a[c] + 1e-4);
-    worst = std::max(worst, growth_alone ? change : std::abs(change));
+    const double counted = growth_alone ? change : std::abs(change);
+    if (!(counted <= worst)) worst = counted;  // NaN too
   }
   return worst;
 }
@@ -132,7 +133,7 @@ Result<Outcome> monotone(Harness& harness, const Situation& s, const Invariant& 
   for (std::size_t i = 0; i < low.image.pixels.size(); ++i) {
     const double a = low.image.pixels[i], b = high.image.pixels[i];
     const double lost = i % 4 == 3 ? 0 : (a - b) / (std::abs(a) + 0.01);
-    if (lost > worst) {
+    if (!(lost <= worst)) {
       worst = lost;
       at = i;
     }
@@ -159,7 +160,7 @@ Result<Outcome> bounded(Harness& harness, const Situation& s, const Invariant& h
     const double v = made.image.pixels[i];
     const double beyond =
         i % 4 == 3 ? 0 : std::max((from - v) / (std::abs(from) + 0.01), (v - to) / (std::abs(to) + 0.01));
-    if (beyond > worst) {
+    if (!(beyond <= worst)) {
       worst = beyond;
       at = i;
     }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/process.h"
 #include "core/text.h"
 #include "stress/auxiliary.h"
 #include "stress/picture_file.h"
@@ -55,22 +56,15 @@ Look look_of(const json& from) {
   return look;
 }
 
-/// A word of a command line for a shell.
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string read_me(const fs::path& folder, const Situation& s, const Outcome& outcome) {
   std::string paths;
-  for (const auto& path : s.look.paths) paths += " --path " + quoted(fs::absolute(path).string());
+  for (const auto& path : s.look.paths) paths += " --path " + shell_word(fs::absolute(path).string());
   const std::string here = fs::absolute(folder).string();
   return fmt::format(
       "{}: {}\n{}\n\nThe check again:\n  afterglow stress --repeat {}\nThe picture alone:\n  afterglow run {} {} -o "
       "out.exr{}\n",
-      s.check, find_check(s.check)->doc, outcome.what, quoted(here), quoted(here + "/" + kPreset),
-      quoted(here + "/" + kInput), paths);
+      s.check, find_check(s.check)->doc, outcome.what, shell_word(here), shell_word(here + "/" + kPreset),
+      shell_word(here + "/" + kInput), paths);
 }
 
 }  // namespace
@@ -98,7 +92,7 @@ Result<void> write_reproducer(const fs::path& folder, const Situation& situation
         {"driver", provenance.driver},
         {"seed", provenance.seed},
         {"trial", provenance.trial}}},
-      {"command", fmt::format("afterglow stress --repeat {}", quoted(fs::absolute(folder).string()))}};
+      {"command", fmt::format("afterglow stress --repeat {}", shell_word(fs::absolute(folder).string()))}};
   AFTERGLOW_CHECK(write_picture_file(situation.picture, folder / kInput));
   AFTERGLOW_CHECK(write_file_atomically(folder / kPreset, situation.look.text()));
   AFTERGLOW_CHECK(write_file_atomically(folder / "README.txt", read_me(folder, situation, outcome)));

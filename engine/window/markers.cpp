@@ -8,11 +8,21 @@
 #include <iterator>
 
 #include "core/file.h"
+#include "core/file_lock.h"
 #include "core/hash.h"
 #include "core/text.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
+namespace {
+
+std::string in_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+}  // namespace
 
 fs::path Markers::file(const std::string& key) const { return folder_ / (hash_text(key).hex().substr(0, 16) + ".txt"); }
 
@@ -22,7 +32,7 @@ Markers::Numbers Markers::read(const std::string& key) const {
   const auto text = read_file(file(key));
   if (!text) return out;
   const auto lines = split(*text, '\n');
-  if (lines.empty() || lines.front() != key) return out;  // another clip's, whose name has the same hash
+  if (lines.empty() || lines.front() != in_one_line(key)) return out;  // another clip's, whose name has the same hash
   for (auto line = std::next(lines.begin()); line != lines.end(); ++line) {
     int number = 0;
     const char* const end = line->data() + line->size();
@@ -73,35 +83,44 @@ std::optional<Marker> Markers::previous(int position) const {
   return found == shown_.rend() ? std::nullopt : std::optional(*found);
 }
 
-Result<void> Markers::keep(const std::string& key) {
-  list();
-  if (folder_.empty()) return {};
+/// Another window may have set markers of the same clip since: the change is made to those that are in the file.
+Result<void> Markers::change(const std::string& key, const std::function<void(Numbers&)>& made) {
+  Numbers& marked = clips_[key];
   std::error_code ignored;
-  if (clips_[key].empty()) {
-    fs::remove(file(key), ignored);
+  if (folder_.empty()) {
+    made(marked);
+    list();
     return {};
   }
   fs::create_directories(folder_, ignored);
-  std::string text = key + "\n";
-  for (const auto& [number, name] : clips_[key]) text += fmt::format("{} {}\n", number, name);
+  const FileLock lock(folder_);
+  marked = read(key);
+  made(marked);
+  list();
+  if (marked.empty()) {
+    fs::remove(file(key), ignored);
+    return {};
+  }
+  std::string text = in_one_line(key) + "\n";
+  for (const auto& [number, name] : marked) text += fmt::format("{} {}\n", number, name);
   return write_file_atomically(file(key), text);
 }
 
 Result<bool> Markers::toggle(int position) {
   const std::string key = footage_->clips()[static_cast<std::size_t>(footage_->clip_at(position))].key;
-  const bool marked = clips_[key].erase(number(position)) == 0;
-  if (marked) clips_[key].emplace(number(position), "");
-  AFTERGLOW_CHECK(keep(key));
-  return marked;
+  const bool marks = !clips_[key].contains(number(position));
+  AFTERGLOW_CHECK(change(key, [&](Numbers& marked) {
+    if (marks)
+      marked.emplace(number(position), "");
+    else
+      marked.erase(number(position));
+  }));
+  return marks;
 }
 
 Result<void> Markers::name(int position, const std::string& text) {
   const std::string key = footage_->clips()[static_cast<std::size_t>(footage_->clip_at(position))].key;
-  std::string line = text;
-  std::ranges::replace_if(
-      line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  clips_[key][number(position)] = trim(line);
-  return keep(key);
+  return change(key, [&](Numbers& marked) { marked[number(position)] = trim(in_one_line(text)); });
 }
 
 }  // namespace afterglow

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,7 +50,7 @@ class Markers {
  private:
   using Numbers = std::map<int, std::string>;  ///< of one clip
   Numbers read(const std::string& key) const;
-  Result<void> keep(const std::string& key);
+  Result<void> change(const std::string& key, const std::function<void(Numbers&)>& made);
   void list();
   int number(int position) const { return footage_->frame(position).number; }
 

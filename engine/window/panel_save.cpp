@@ -8,18 +8,12 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/process.h"
 #include "core/replace_file.h"
 #include "script/explanation.h"
 
 namespace afterglow {
 namespace {
-
-// As a word of a shell.
-std::string in_quotes(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 // Does the preset itself say this, without the edit over it? Of what nobody knows, yes.
 bool says(const Build& build, const BaseChange& change) {
@@ -50,11 +44,8 @@ std::string argument_words(const SettingEdits& edits) {
   std::string out;
   for (const auto& edit : edits.edits()) {
     if (!edit.entry.empty()) continue;
-    const bool plain = edit.value.choice.empty() && edit.value.type != SettingType::vec2 &&
-                       edit.value.type != SettingType::vec3 && edit.value.type != SettingType::color;
     const std::string value = edit.value.choice.empty() ? edit.value.text() : edit.value.choice;
-    const std::string word = edit.setting + "=" + value;
-    out += (out.empty() ? "--arg " : " --arg ") + (plain ? word : in_quotes(word));
+    out += (out.empty() ? "--arg " : " --arg ") + shell_word(edit.setting + "=" + value);
   }
   return out;
 }

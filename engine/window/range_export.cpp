@@ -48,19 +48,6 @@ int first_picture(Player& player) {
   return footage.frame(std::min(player.transport().first(), footage.frames() - 1)).picture;
 }
 
-/// Runs of numbers: "3-12,20".
-std::string list_text(const std::vector<int>& numbers) {
-  std::string out;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t end = i;
-    while (end + 1 < numbers.size() && numbers[end + 1] == numbers[end] + 1) ++end;
-    if (!out.empty()) out += ",";
-    out += i == end ? fmt::format("{}", numbers[i]) : fmt::format("{}-{}", numbers[i], numbers[end]);
-    i = end + 1;
-  }
-  return out;
-}
-
 }  // namespace
 
 void RangeExport::preset_opened(const fs::path& preset) {
@@ -148,7 +135,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
     const Footage::Clip& clip = player.footage().clips()[at];
     const bool movie = player.footage().movie(player.footage().frame(clip.first).picture) != nullptr;
     out.files.inputs.push_back(footage.inputs[at]);
-    out.files.frames_of.push_back(clip.frames > 1 || movie ? list_text(numbers) : "");
+    out.files.frames_of.push_back(clip.frames > 1 || movie ? frames_text(numbers) : "");
   }
   out.files.output = output;
   out.files.depth = footage.read.depth;
@@ -158,6 +145,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   out.loop.max_memory = out.session.stack.max_memory;
   out.input_space = footage.read.input_space;
   out.loop.read.layer = footage.read.layer;
+  out.loop.read.keep_negative = footage.read.keep_negative;
   out.loop.read.cut_overscan = footage.read.cut_overscan;
   out.loop.read.max_bytes = footage.read.max_bytes;
   out.loop.fps = player.transport().fps();

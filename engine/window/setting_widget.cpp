@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "image/srgb.h"
@@ -52,8 +53,9 @@ bool integer_row(const char* name, const SettingSchema& schema, double& value) {
   const int least = static_cast<int>(std::max(schema.min.value_or(-kMaxInteger), -2147483647.0));
   const int most = static_cast<int>(std::min(schema.max.value_or(kMaxInteger), 2147483647.0));
   int number = static_cast<int>(value);
-  const bool changed = schema.min && schema.max && most - least <= 1000 ? ImGui::SliderInt(name, &number, least, most)
-                                                                        : ImGui::DragInt(name, &number, 0.1f);
+  const bool changed = schema.min && schema.max && std::int64_t{most} - least <= 1000
+                           ? ImGui::SliderInt(name, &number, least, most)
+                           : ImGui::DragInt(name, &number, 0.1f);
   value = std::clamp(number, least, most);
   return changed;
 }

@@ -57,9 +57,12 @@ struct Ruler {
     const long long step = round_step(static_cast<double>(widest + space.gap) / per_number);
     long long small = small_step(step);
     if (static_cast<double>(small) * per_number < static_cast<double>(space.least_tick)) small = step;
+    const auto round_below = [&](int at, long long of) {  // frames may be below 0
+      return number(at) / of - (number(at) % of < 0 ? 1 : 0);
+    };
     // Where only each seventh frame is there, the first from a round number on stands for it.
     const auto reaches = [&](int at, long long of) {
-      return at == clip.first ? number(at) % of == 0 : number(at) / of != number(at - 1) / of;
+      return at == clip.first ? number(at) % of == 0 : round_below(at, of) != round_below(at - 1, of);
     };
     for (int at = clip.first; at < end; ++at) {
       if (!reaches(at, small)) continue;

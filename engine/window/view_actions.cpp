@@ -11,7 +11,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr double kExposureStep = 0.25, kMostExposure = 16, kGammaStep = 0.1;
+constexpr double kExposureStep = 0.25, kGammaStep = 0.1;
 constexpr double kPanStep = 0.125;  // of the window
 
 }  // namespace

@@ -113,7 +113,9 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
   draw_image_picker(ui, port);
   float exposure = static_cast<float>(view.exposure);
-  if (ImGui::SliderFloat("exposure", &exposure, -10, 10, "%+.2f EV")) view.exposure = exposure;
+  constexpr auto kMost = static_cast<float>(kMostExposure);
+  if (ImGui::SliderFloat("exposure", &exposure, -kMost, kMost, "%+.2f EV", ImGuiSliderFlags_AlwaysClamp))
+    view.exposure = exposure;
   if (wants_menu(ui)) view.exposure = 0;
   ui.help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
   float gamma = static_cast<float>(view.gamma);

@@ -100,6 +100,7 @@ Result<Step> WindowApp::step() {
   // The player may write what the last frame reads.
   AFTERGLOW_CHECK(painter_->finish());
   AFTERGLOW_TRY(const Step turn, player_.step());
+  tell_failure();
   if (turn.changed) {
     ++turn_;
     step_shown_ = false;
@@ -107,6 +108,15 @@ Result<Step> WindowApp::step() {
   }
   if (turn.timed && player_.session().all_timed()) redraw_ = std::max(redraw_, 1);
   return turn;
+}
+
+/// Why the picture stays, for the terminal too: once, until another reason comes or there is none.
+void WindowApp::tell_failure() {
+  const auto& failed = player_.shown().failed;
+  const std::string text = failed ? failed->text() : "";
+  if (text == told_failure_) return;
+  told_failure_ = text;
+  if (failed) diagnostics_.warn("the stack cannot be run: " + text);
 }
 
 /// A hidden window plays nothing, and drops nothing either.

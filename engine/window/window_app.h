@@ -58,6 +58,7 @@ class WindowApp {
   Result<void> follow_scale();
   void draw_parts(Size window);
   void tell_captured();
+  void tell_failure();
   Result<void> draw_overlays();
   Result<void> look_under_cursor();
   Result<void> look_at_scopes();
@@ -100,6 +101,7 @@ class WindowApp {
   std::unique_ptr<DisplayKeeper> displays_;  ///< none: the display stays as it is
 
   InputQueue input_;
+  std::string told_failure_;
   std::vector<std::filesystem::path> to_open_, others_to_open_;
   std::filesystem::path
       to_open_then_;       ///< the preset in whose favour the present one is left; empty: the window closes

@@ -105,7 +105,7 @@
 
 ---A picture tube: scan lines, phosphor stripes, curved glass.
 ---@class afterglow.settings.crt : afterglow.EntryKeys
----@field lines? integer|afterglow.Moving  Scan lines of the tube. integer 16…4320, default 270
+---@field lines? integer|afterglow.Moving  Scan lines of the tube. Below three pixels of the picture each they fade; of two pixels none is seen. integer 16…4320, default 270
 ---@field softness? number|afterglow.Moving  Width of the beam's spot along a line. 0.2…4 lines, default 0.45
 ---@field scan_lines? number|afterglow.Moving  How dark it is between lines. 0: not. 0…1, default 0.85
 ---@field phosphor? number|afterglow.Moving  How much the stripes of phosphor show. 0: not. 0…1, default 0.35

@@ -16,7 +16,7 @@ return fx.effect {
   doc = "A picture tube: scan lines, phosphor stripes, curved glass.",
   at = "after_post_process", order = 150, space = "display",
   settings = {
-    lines = fx.int { min = 16, max = 4320, default = 270, doc = "Scan lines of the tube." },
+    lines = fx.int { min = 16, max = 4320, default = 270, doc = "Scan lines of the tube. Below three pixels of the picture each they fade; of two pixels none is seen." },
     softness = fx.float { min = 0.2, max = 4, default = 0.45, unit = "lines", doc = "Width of the beam's spot along a line." },
     scan_lines = fx.float { min = 0, max = 1, default = 0.85, doc = "How dark it is between lines. 0: not." },
     phosphor = fx.float { min = 0, max = 1, default = 0.35, doc = "How much the stripes of phosphor show. 0: not." },

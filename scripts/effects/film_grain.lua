@@ -27,7 +27,7 @@ return fx.effect {
     local size = math.max(1, s.size)  -- a preview cannot show finer grain
     local cell = size * math.sqrt(2 / 3)  -- B-splines are wider than their cells: as wide as tents over cells of that size
     local coarse = math.floor(cell * 64) / 64
-    local key = word_of(word_of(s.seed) + math.floor(g.frame) & 0xffffffff)
+    local key = word_of(word_of(s.seed) + (math.tointeger(math.floor(g.frame)) or 0) & 0xffffffff)
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
                     size_of_grain = { coarse, cell - coarse }, colored = s.colored, key = key & 0x7fffffff, shift = { (key >> 24) / 16, (key >> 16 & 255) / 16 }, fine = size == 1, grey = s.colored == 0 }
   end,

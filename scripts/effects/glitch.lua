@@ -24,7 +24,7 @@ return fx.effect {
   build = function(g, s, source)
     local jitter = s.scan_line_jitter
     return g:pass {
-      shader = "glitch/shift", source = source, line_height = s.line_height, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed,
+      shader = "glitch/shift", source = source, line_height = s.line_height, frame = (math.tointeger(math.floor(g.frame)) or 0) & 0x7fffffff, seed = s.seed,
       quiet = math.max(1 - 1.2 * jitter, 0), jump = jitter > 0 and 0.002 + 0.05 * jitter ^ 3 or 0,
       shake = 0.2 * s.horizontal_shake, split = 0.04 * s.rgb_split,
       roll = math.floor(source.height * (s.vertical_roll * g.time % 1)) % source.height,

@@ -64,6 +64,13 @@ vec4 ag_texture_offset(sampler2D image, vec2 at, ivec2 texels) {
   return ag_texture(image, at + vec2(texels) / vec2(image_size(image)));
 }
 
+// GLSL's own, which some drivers get wrong where the number is a constant (Mesa 22.3 on CPUs).
+vec2 ag_unpack_half(uint bits) { return vec2(unpackHalf2x16(bits).x, unpackHalf2x16(bits >> 16).x); }
+uint ag_pack_snorm(vec4 v) {
+  ivec4 bytes = ivec4(roundEven(clamp(v, -1.0, 1.0) * 127.0)) & 255;
+  return uint(bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24);
+}
+
 // One texel, exactly as stored.
 vec4 fetch(sampler2D image, ivec2 pixel) { return ag_texel(image, clamp(pixel, ivec2(0), image_size(image) - 1)); }
 

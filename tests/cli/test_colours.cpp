@@ -111,6 +111,36 @@ TEST_F(Colours, OutsideRec709AreTold) {
   EXPECT_THAT(said, IsEmpty());
 }
 
+/// Into the space that they came from they go back as they were, codes below black too.
+TEST_F(Colours, OutsideRec709AreKeptWhereAsked) {
+  const auto there_and_back = [&](const std::string& name, const std::string& space, const std::string& gamut) {
+    const Outcome outcome = run({"run", "look.lua", name, "-o", "back." + name, "--input-space", space,
+                                 "--output-space", space, "--gamut", gamut});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_EQ(outcome.err.empty(), gamut == "keep") << outcome.err;
+    Pixel all = pixels_of("back." + name);
+    all.resize(3);
+    return all;
+  };
+  for (const bool half : {true, false}) {
+    const OIIO::ImageSpec spec(64, 64, 3, half ? OIIO::TypeHalf : OIIO::TypeFloat);
+    ASSERT_NO_FATAL_FAILURE(make("a.exr", spec, {1, 0.125f, 0.0625f}));
+    const Pixel kept = there_and_back("a.exr", "acescg", "keep");
+    EXPECT_NEAR(kept[0], 1, 1e-3);
+    EXPECT_NEAR(kept[1], 0.125, 1e-3);
+    EXPECT_NEAR(kept[2], 0.0625, 1e-3);
+    EXPECT_GT(there_and_back("a.exr", "acescg", "cut")[1], 0.15);
+  }
+  const OIIO::ImageSpec spec(64, 64, 3, OIIO::TypeUInt16);
+  const Pixel codes{0.05f, 0.7f, 0.3f};
+  ASSERT_NO_FATAL_FAILURE(make("a.tif", spec, codes));
+  for (const char* space : {"logc3", "logc4", "slog3", "acescct"}) {
+    const Pixel kept = there_and_back("a.tif", space, "keep");
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(kept[c], codes[c], 1.5 / 65535) << space << c;
+    EXPECT_GT(there_and_back("a.tif", space, "cut")[0], 0.06) << space;
+  }
+}
+
 TEST_F(Colours, NegativeLightIsTold) {
   for (const bool half : {true, false}) {
     const OIIO::ImageSpec spec(64, 64, 3, half ? OIIO::TypeHalf : OIIO::TypeFloat);

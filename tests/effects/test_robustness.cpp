@@ -10,14 +10,16 @@ namespace {
 
 using namespace reference;
 
-Scene stress_scene(Size size) {
+/// `below`: of three values one is that far below 0, as --gamut keep leaves them.
+Scene stress_scene(Size size, bool below = false) {
   static constexpr double kValues[] = {0, 1e30, 65504, 1e4, 1e-38, 1e-10, 0.18, 1, 60, 3e29, 1e20, 65536};
   std::mt19937 generator(51);
   std::uniform_int_distribution<std::size_t> pick(0, std::size(kValues) - 1);
   const auto any = [&] { return kValues[pick(generator)]; };
+  const auto light = [&] { return below && generator() % 3 == 0 ? -any() : any(); };
   Scene scene{"stress", DoubleImage(size), DoubleImage(size), DoubleImage(size)};
   for (std::size_t i = 0; i < scene.source.pixels.size(); ++i) {
-    scene.source.pixels[i] = Rgba(any(), any(), any(), i % 3 * 0.5);
+    scene.source.pixels[i] = Rgba(light(), light(), light(), i % 3 * 0.5);
     scene.depth->pixels[i] = Rgba(any(), 0, 0, 1);
     scene.normal->pixels[i] = Rgba(any(), -any(), any(), 1);
   }
@@ -101,6 +103,15 @@ TEST_F(Effects, NothingTurnsNonFinite) {
       EXPECT_TRUE(alpha_is_kept(made, scene)) << entries;
       EXPECT_TRUE(all_finite(run_stack(entries, scene, Way::fused).result)) << entries;
     }
+}
+
+TEST_F(Effects, LightBelowZeroTurnsNothingNonFinite) {
+  const Scene scene = stress_scene({37, 23}, true);
+  for (const char* entries : kExtremes) {
+    const Made made = run_stack(entries, scene, Way::plain);
+    for (const auto& [name, pixels] : made.images) EXPECT_TRUE(all_finite(pixels)) << entries << " " << name;
+    EXPECT_TRUE(all_finite(run_stack(entries, scene, Way::fused).result)) << entries;
+  }
 }
 
 TEST_F(Effects, NothingTurnsNonFiniteInHalfFloats) {

@@ -281,23 +281,6 @@ TEST_F(FarmFiles, DescriptionsThatAreNoneAreRefused) {
   EXPECT_THAT(with(later.dump()), HasSubstr("it has version 3, this program reads version 2"));
 }
 
-TEST(FarmText, FramesAreReadBackAsTheyWere) {
-  for (const std::vector<int>& frames : {std::vector<int>{},
-                                         {7},
-                                         {1, 2, 3},
-                                         {1, 3, 5, 7},
-                                         {1, 5},
-                                         {1, 2, 9, 12, 15, 16},
-                                         {-3, -2, -1, 0},
-                                         {5, 4, 3},
-                                         {10, 20, 30, 31, 32, 2}}) {
-    const std::string text = farm::frames_text(frames);
-    EXPECT_EQ(frames.empty() ? std::vector<int>{} : parse_frames(text).value(), frames) << text;
-  }
-  EXPECT_EQ(farm::frames_text({1, 2, 3, 4}), "1-4");
-  EXPECT_EQ(farm::frames_text({1, 3, 5}), "1-5x2");
-}
-
 /// Programs of Slurm's that a test writes, in the place of real ones.
 class FakeSlurm : public FarmTest {
  protected:
@@ -320,6 +303,34 @@ class FakeSlurm : public FarmTest {
     return options;
   }
 };
+
+/// A controller that is busy does not answer now and then.
+TEST_F(FakeSlurm, OneQuestionWithoutAnswerDoesNotEndTheWait) {
+  program("sbatch", "echo 7");
+  program("squeue", R"sh(count=$(dirname "$0")/count
+n=$(cat "$count" 2>/dev/null || echo 0)
+echo $((n + 1)) >"$count"
+[ "$n" = 1 ] && { echo "slurm_load_jobs error: Socket timed out on send/recv operation" >&2; exit 1; }
+[ "$n" -lt 3 ] && echo "7|0|RUNNING|n1|None" || echo "7|0|TIMEOUT|n1|None")sh");
+  const Outcome outcome = run({"farm", "look.lua", "in/shot.####.exr", "-o", "out/", "--wait"}, with_fakes());
+  EXPECT_THAT(outcome.err, HasSubstr("Socket timed out on send/recv operation; it is asked again"));
+  EXPECT_THAT(outcome.err, HasSubstr("its time limit was over"));
+  EXPECT_EQ(read("slurm/count"), "4\n");
+}
+
+TEST_F(FakeSlurm, OneArrayThatCannotBeCancelledLeavesNoOther) {
+  program("sbatch", "echo $$");
+  ASSERT_EQ(run({"farm", "look.lua", "in/shot.####.exr", "-o", "out/"}, with_fakes()).exit_code, kDone);
+  const std::string job = job_of("out").string();
+  ASSERT_EQ(run({"farm", "retry", job}, with_fakes()).exit_code, kDone);
+  program("scancel", R"sh(echo "$@" >>"$(dirname "$0")/cancelled"
+[ "$(wc -l <"$(dirname "$0")/cancelled")" = 1 ] && { echo "Socket timed out" >&2; exit 1; }
+exit 0)sh");
+  const Outcome outcome = run({"farm", "cancel", job}, with_fakes());
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("Socket timed out; cancel again"));
+  EXPECT_EQ(std::ranges::count(read("slurm/cancelled"), '\n'), 2);
+}
 
 TEST_F(FakeSlurm, SubmissionsAtOnceLoseNoArray) {
   program("sbatch", "sleep 0.2; echo $$");
@@ -395,6 +406,50 @@ TEST(FarmText, OfAChunkTheLastArrayCounts) {
   EXPECT_EQ(accounting.size(), 2u);
   EXPECT_EQ(accounting.at(3).state, "CANCELLED");
   EXPECT_TRUE(accounting.at(3).ended());
+}
+
+/// A chunk that failed on one cluster and was submitted to another one; both have arrays of the same number.
+TEST(FarmText, OfSeveralClustersTheLastArrayCounts) {
+  const farm::Submissions submissions{{{"12", "b", 0}, {"12", "a", 0}}, false};
+  farm::TaskStates states;
+  for (const auto& [cluster, squeue] : {std::pair<std::string, std::string>{"a", "12|0|RUNNING|m1|None\n"},
+                                        {"b", "12|0|FAILED|n1|None\n12|1|COMPLETED|n2|None\n"}})
+    farm::add_later(states, farm::states_of_queue(squeue, submissions, cluster));
+  ASSERT_EQ(states.size(), 2u);
+  EXPECT_EQ(states.at(0).state, "RUNNING");
+  EXPECT_EQ(states.at(0).place, 1u);
+  EXPECT_EQ(states.at(1).node, "n2");
+  // Accounting is behind the queue: of the same array it says nothing new.
+  farm::add_later(states, farm::states_of_accounting("12_0|PENDING|None assigned\n", submissions, "a"));
+  EXPECT_EQ(states.at(0).state, "RUNNING");
+}
+
+TEST(FarmText, ArraysAreAsLargeAsTheClusterTakesThem) {
+  EXPECT_EQ(farm::largest_array("MaxArraySize            = 1001\nSchedulerParameters     = (null)\n"), 1001u);
+  EXPECT_EQ(farm::largest_array("MaxArraySize = 100001\nSchedulerParameters = bf_interval=1,max_array_tasks=1000,x\n"),
+            1000u);
+  EXPECT_EQ(farm::largest_array("MaxArraySize = 10\nSchedulerParameters = max_array_tasks=1000\n"), 10u);
+  EXPECT_EQ(farm::largest_array("ClusterName = test\n"), std::nullopt);
+}
+
+TEST(FarmText, TellsOfTasksThatWillNotStart) {
+  farm::Job job;
+  job.id = "j";
+  job.chunks.resize(3);
+  farm::JobStatus status;
+  const auto waits = [&](const char* why) {
+    status.chunks.push_back(
+        {.state = farm::ChunkStatus::State::waiting, .tries = 0, .exit_code = {}, .node = {}, .why = why});
+  };
+  waits("priority");
+  waits("launch failed requeued held");
+  waits("badconstraints");
+  EXPECT_EQ(farm::waiting_line(job, status),
+            "frames; of 3 chunks 3 waiting; Slurm says: badconstraints, launch failed requeued held");
+  const std::string text = farm::status_text(job, status, false);
+  EXPECT_THAT(text, HasSubstr("requeued held"));
+  EXPECT_THAT(text, HasSubstr("badconstraints"));
+  EXPECT_THAT(text, Not(HasSubstr("priority")));
 }
 
 TEST(FarmText, WhileOneWaitsFramesAreCountedAndChunksNamed) {

@@ -8,6 +8,7 @@
 
 #include "clips.h"
 #include "core/file.h"
+#include "core/text.h"
 
 namespace afterglow {
 namespace {
@@ -35,6 +36,14 @@ class RunVideos : public Clips {
     Diagnostics quiet;
     const auto picture = read_picture(path(file), {}, quiet);
     return picture ? number_of(*picture) : -1;
+  }
+  /// Values that ffprobe prints of a file, or of one of its streams.
+  std::string probed(const std::string& entries, const std::string& file, const std::string& stream = "") {
+    const std::string of = stream.empty() ? "" : "-select_streams " + stream;
+    EXPECT_EQ(shell(fmt::format("ffprobe -v error {} -show_entries {} -of csv=p=0:nk=1 {} >probed", of, entries, file)),
+              0)
+        << said_;
+    return trim(read_file(path("probed")).value());
   }
   std::string said_;
 };
@@ -113,6 +122,94 @@ TEST_F(RunVideos, ATruncatedClipEndsWithExitCode4AndWhatIsWhole) {
   EXPECT_THAT(said_, HasSubstr("of 48 frames failed"));
   EXPECT_EQ(number_in("cut.0012.png"), 12);
   EXPECT_FALSE(std::filesystem::exists(path("cut.0048.png")));
+}
+
+/// The last frame that came stays to the end, and the sound goes on.
+TEST_F(RunVideos, WhatFailsAtTheEndIsHeld) {
+  const std::string file = clip("whole.mp4", std::string(kCodec) + " -movflags +faststart");
+  const std::string bytes = read_file(file).value();
+  std::ofstream(path("cut.mp4"), std::ios::binary) << bytes.substr(0, bytes.size() * 6 / 10);
+  EXPECT_EQ(shell("AFTERGLOW run look.lua cut.mp4 -o out.mkv --codec ffv1"), 4);
+  EXPECT_EQ(probed("format=duration", "out.mkv"), "2.000000");
+}
+
+std::string only_digits(std::string text) {
+  std::erase_if(text, [](char c) { return (c < '0' || c > '9') && c != '.'; });
+  return text;
+}
+
+/// Each container that is read becomes a video, with the sound that it has.
+TEST_F(RunVideos, EveryContainerBecomesAVideo) {
+  clip("a.mp4", std::string(kCodec) + " -an", 24);
+  ffmpeg(
+      fmt::format("-i \"{}\" -f lavfi -i sine=d=1 -c:v copy -c:a aac -shortest \"{}\"", path("a.mp4"), path("s.mp4")));
+  for (const auto& [name, codec] :
+       std::vector<std::pair<std::string, std::string>>{{"a.mov", "-c copy"},
+                                                        {"a.mkv", "-c copy"},
+                                                        {"a.nut", "-c copy"},
+                                                        {"a.ts", "-c copy"},
+                                                        {"a.flv", "-c copy"},
+                                                        {"a.avi", "-c:v mpeg4 -c:a mp3"},
+                                                        {"a.webm", "-c:v libvpx -b:v 1M -c:a libvorbis"},
+                                                        {"a.mxf", "-c:v mpeg2video -r 25 -c:a pcm_s16le -ar 48000"},
+                                                        {"a.mpg", "-c:v mpeg2video -r 25 -c:a mp2"},
+                                                        {"a.asf", "-c:v mpeg4 -c:a aac"},
+                                                        {"a.ogv", "-c:v libtheora -c:a libvorbis"},
+                                                        {"a.ivf", "-an -c:v libvpx -b:v 1M"},
+                                                        {"a.m1v", "-an -c:v mpeg1video -r 25"},
+                                                        {"a.y4m", "-an"},
+                                                        {"a.gif", "-an"},
+                                                        {"a.apng", "-an"},
+                                                        {"a.webp", "-an -c:v libwebp_anim"}}) {
+    ffmpeg(fmt::format("-i \"{}\" {} \"{}\"", path("s.mp4"), codec, path(name)));
+    EXPECT_EQ(shell("AFTERGLOW run look.lua " + name + " -o " + name + ".mkv --codec ffv1"), 0) << name << said_;
+    const bool sounds = codec.find("-an") == std::string::npos;
+    EXPECT_EQ(probed("stream=codec_type", name + ".mkv"), sounds ? "video\naudio" : "video") << name;
+  }
+}
+
+/// A stream's own clock, which runs from anywhere, is not that of another file's sound.
+TEST_F(RunVideos, SoundOfAnotherFileBeginsWithThePictures) {
+  clip("a.mp4", kCodec, 48);
+  ffmpeg(fmt::format("-i \"{}\" -c copy -output_ts_offset 20 \"{}\"", path("a.mp4"), path("late.ts")));
+  ffmpeg(fmt::format("-f lavfi -i sine=d=2 -c:a pcm_s16le \"{}\"", path("two.wav")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua late.ts -o whole.mov --codec prores --audio two.wav"), 0) << said_;
+  EXPECT_NEAR(std::stod(only_digits(probed("stream=duration", "whole.mov", "a:0"))), 2, 0.03);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua late.ts -o part.mov --codec prores --audio two.wav --frames 25-48"), 0)
+      << said_;
+  EXPECT_NEAR(std::stod(only_digits(probed("stream=duration", "part.mov", "a:0"))), 1, 0.03);
+}
+
+/// Chapters and subtitles end with the part; a subtitle that shows where it begins shows from there on.
+TEST_F(RunVideos, APartKeepsWhatBelongsToIt) {
+  std::ofstream(path("texts.srt")) << "1\n00:00:00,500 --> 00:00:01,500\nfirst\n\n2\n00:00:01,600 --> 00:00:01,900\n"
+                                      "second\n\n";
+  std::ofstream(path("chapters"))
+      << ";FFMETADATA1\n[CHAPTER]\nTIMEBASE=1/1000\nSTART=0\nEND=1250\ntitle=one\n[CHAPTER]\n"
+         "TIMEBASE=1/1000\nSTART=1250\nEND=2000\ntitle=two\n";
+  clip("a.mp4", kCodec, 48);
+  ffmpeg(fmt::format("-i \"{}\" -i \"{}\" -i \"{}\" -map 0 -map 1 -map_metadata 2 -c copy -c:s mov_text \"{}\"",
+                     path("a.mp4"), path("texts.srt"), path("chapters"), path("told.mp4")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua told.mp4 -o first.mkv --frames 1-24 && "
+                  "AFTERGLOW run look.lua told.mp4 -o last.mkv --frames 25-48"),
+            0)
+      << said_;
+  EXPECT_EQ(probed("chapter=start_time,end_time", "first.mkv"), "0.000000,1.000000");
+  EXPECT_EQ(probed("chapter=start_time,end_time", "last.mkv"), "0.000000,0.250000\n0.250000,1.000000");
+  EXPECT_EQ(probed("packet=pts_time,duration_time", "first.mkv", "s:0"), "0.500000,0.500000");
+  EXPECT_EQ(probed("packet=pts_time,duration_time", "last.mkv", "s:0"), "0.000000,0.500000\n0.600000,0.300000");
+}
+
+TEST_F(RunVideos, WhatIsLeftOutOfAVideoIsTold) {
+  clip("a.mp4", kCodec, 24);
+  ffmpeg(fmt::format("-i \"{0}\" -i \"{0}\" -map 0 -map 1 -c:v:0 copy -c:v:1 mjpeg \"{1}\"", path("a.mp4"),
+                     path("two.mkv")));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua two.mkv -o one.mkv"), 0);
+  EXPECT_THAT(said_, HasSubstr("of the pictures of two.mkv one stream is worked on; video 2 (mjpeg) is left out"));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua a.mp4 -o one.mkv --fps 24"), 0);
+  EXPECT_EQ(said_, "");
+  EXPECT_EQ(shell("AFTERGLOW run look.lua a.mp4 -o one.mkv --fps 12"), 0);
+  EXPECT_THAT(said_, HasSubstr("a.mp4: frames of a video keep their own times (24 a second)"));
 }
 
 TEST_F(RunVideos, FramesComeThroughPipes) {

@@ -23,6 +23,13 @@ TEST(Calibrate, TheFastestThatIsExactIsForEveryError) {
             "0.0000 fused fp32 storage-reads");
 }
 
+/// A look that hardly filters and has no bright light shows nothing of it.
+TEST(Calibrate, TheFirstChoiceIsExactWhateverTheLookShows) {
+  EXPECT_EQ(chosen({point("fused fp32", 10, 2e-6), point("fused fp32 hardware-filter", 5, 1e-6)}),
+            "0.0000 fused fp32; 0.0005 fused fp32 hardware-filter");
+  EXPECT_EQ(chosen({point("fused fp32", 10, 1e-4), point("fused fp32 hardware-filter", 5, 1e-6)}), "");
+}
+
 TEST(Calibrate, LessExactChoicesMustBeAllowedAndWorthIt) {
   EXPECT_EQ(chosen({point("fused fp32", 10, 1e-6), point("fused fp16", 5, 1e-3),
                     point("fused fp16 hardware-filter", 4, 4e-3), point("fused-filters fp16", 1, 1)}),

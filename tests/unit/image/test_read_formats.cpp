@@ -166,6 +166,14 @@ TEST_F(Png, PrimariesChunk) {
   EXPECT_EQ(picture.sanitized.negative, 2u);
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(picture.color.at(1, 0)[c], srgb_to_linear(128 / 255.0), 1e-4);  // white stays white
+  ReadOptions keep;
+  keep.keep_negative = true;
+  Diagnostics silent;
+  const Picture kept = read_picture(folder_ / "in.png", keep, silent).value();
+  EXPECT_NEAR(kept.color.at(0, 0)[0], 1.2249, 1e-3);
+  EXPECT_NEAR(kept.color.at(0, 0)[1], -0.0421, 1e-3);
+  EXPECT_NEAR(kept.color.at(0, 0)[2], -0.0196, 1e-3);
+  EXPECT_EQ(kept.sanitized.negative, 0u);
 }
 
 TEST_F(Png, SixteenBitsAreReadWhole) {

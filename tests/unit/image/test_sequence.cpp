@@ -181,5 +181,22 @@ TEST(Pattern, AFrameHasItsSequenceAroundIt) {
     EXPECT_EQ(around(name), "none") << name;
 }
 
+TEST(Frames, AreReadBackAsTheyWereWritten) {
+  for (const std::vector<int>& frames : {std::vector<int>{},
+                                         {7},
+                                         {1, 2, 3},
+                                         {1, 3, 5, 7},
+                                         {1, 5},
+                                         {1, 2, 9, 12, 15, 16},
+                                         {-3, -2, -1, 0},
+                                         {5, 4, 3},
+                                         {10, 20, 30, 31, 32, 2}}) {
+    const std::string text = frames_text(frames);
+    EXPECT_EQ(frames.empty() ? std::vector<int>{} : parse_frames(text).value(), frames) << text;
+  }
+  EXPECT_EQ(frames_text({1, 2, 3, 4}), "1-4");
+  EXPECT_EQ(frames_text({1, 3, 5}), "1-5x2");
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -151,11 +151,6 @@ TEST_F(FootageTest, FilesThatOnlyLookLikeVideosAreRefused) {
   }
 }
 
-TEST(Frames, AreWrittenAsRanges) {
-  EXPECT_EQ(frames_text({3, 7, 8, 9, 12}), "3, 7-9, 12");
-  EXPECT_THAT(frames_text({}), IsEmpty());
-}
-
 TEST_F(FootageTest, EachInputIsAClip) {
   for (const char* name : {"a.01.exr", "a.02.exr", "a.04.exr", "b.1.exr", "still.exr"}) write(name, 0);
   const auto footage = open({path("a.##.exr"), path("still.exr"), path("b.%d.exr")}).value();

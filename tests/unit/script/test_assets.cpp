@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files that effects read: the setting type, where a name is looked up, and where it never leads.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -138,6 +139,55 @@ TEST_F(Assets, Messages) {
                "settings = { table = fx.file { extensions = { \".cube\" } } }, build = function(g, s, source) return "
                "source end");
   EXPECT_THAT(found(), HasSubstr("without the point"));
+}
+
+/// g:image { pixels = … }: palettes, curves and weights that a script makes.
+class Pixels : public testing::Test {
+ protected:
+  /// The image of this call, or what is wrong with it.
+  std::string made(const std::string& arguments) {
+    scene.effect("painted",
+                 "build = function(g, s, source)\n  return g:pass { shader = \"tint/apply\", source = source, "
+                 "numbers = g:image {\n" +
+                     arguments + "\n} }\nend");
+    scene.write("shaders/tint/apply.glsl",
+                "uniform sampler2D numbers;\nvec4 apply(vec4 color) { return color + fetch(numbers, ivec2(0)); }\n");
+    scene.stack("fx.painted {}");
+    auto preset = scene.load();
+    if (!preset) return scene.shorten(preset.error().text());
+    auto graph = scene.build(*preset);
+    if (!graph) return scene.shorten(graph.error().text());
+    for (const auto& image : graph->images)
+      if (image.data) data = image.data;
+    return fmt::format("{}x{}", data->size.width, data->size.height);
+  }
+  Scene scene;
+  std::shared_ptr<const ImageData> data;
+};
+
+TEST_F(Pixels, AreNumbersOrLists) {
+  ASSERT_EQ(made("pixels = { 0.5, { 1, 2, 3 }, { 4, 5, 6, 0.25 }, { 7 } }"), "4x1");
+  EXPECT_EQ(data->pixels, (std::vector<float>{0.5f, 0.5f, 0.5f, 1, 1, 2, 3, 1, 4, 5, 6, 0.25f, 7, 0, 0, 1}));
+  ASSERT_EQ(made("pixels = { 1, 2, 3, 4, 5, -1e9 }, width = 2"), "2x3");
+  EXPECT_EQ(data->pixels[20], -1e9f);
+  const Hash first = data->hash;
+  ASSERT_EQ(made("pixels = { 1, 2, 3, 4, 5, -1e9 }, width = 2"), "2x3");
+  EXPECT_EQ(data->hash, first);
+  ASSERT_EQ(made("pixels = { 1, 2, 3, 4, 5, -1e9 }, width = 3"), "3x2");
+  EXPECT_NE(data->hash, first);
+}
+
+TEST_F(Pixels, Messages) {
+  EXPECT_THAT(made("pixels = {}"), HasSubstr("effects/painted.lua:5: error: effect 'painted': g:image: pixels = "));
+  EXPECT_THAT(made("pixels = {}"), HasSubstr("a list of 1 to 65536 pixels"));
+  EXPECT_THAT(made("pixels = 3"), HasSubstr("a list of 1 to 65536 pixels"));
+  EXPECT_THAT(made("pixels = { 1, \"red\" }"), HasSubstr("pixel 2 is \"red\"; allowed: a number, 1 to 4 numbers"));
+  EXPECT_THAT(made("pixels = { 1, 0/0 }"), HasSubstr("pixel 2 is not finite"));
+  EXPECT_THAT(made("pixels = { 1, 1e300 }"), HasSubstr("pixel 2 is not finite"));
+  EXPECT_THAT(made("pixels = { 1, 2, 3 }, width = 2"), HasSubstr("3 pixels are no whole rows of 2"));
+  EXPECT_THAT(made("pixels = { 1, 2, 3 }, width = 0"), HasSubstr("no whole rows of 0"));
+  EXPECT_THAT(made("pixels = { 1 }, file = \"a.png\""), HasSubstr("'file' does not go with 'pixels'"));
+  EXPECT_THAT(made("pixel = { 1 }"), HasSubstr("did you mean 'pixels'?"));
 }
 
 }  // namespace

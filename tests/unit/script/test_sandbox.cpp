@@ -57,9 +57,21 @@ TEST(Sandbox, ManyNamesDoNotSlowAMisspeltOne) {
 INSTANTIATE_TEST_SUITE_P(Sandbox, Absent,
                          testing::Values("io", "os", "debug", "package", "coroutine", "utf8", "load", "loadstring",
                                          "loadfile", "dofile", "collectgarbage", "warn", "next", "xpcall",
-                                         "string.dump", "string.find", "string.match", "string.gmatch", "string.gsub",
-                                         "string.pack", "string.unpack", "(\"\").gsub", "(\"\").dump", "table.move",
-                                         "math.random", "math.randomseed", "getfenv"));
+                                         "string.dump", "string.match", "string.gmatch", "string.gsub", "string.pack",
+                                         "string.unpack", "(\"\").gsub", "(\"\").dump", "table.move", "math.random",
+                                         "math.randomseed", "getfenv"));
+
+TEST(Sandbox, TextIsFoundAsLuaFindsIt) {
+  EXPECT_RUNS(
+      "local first, last = ('bottom_left'):find('left')\nassert(first == 8 and last == 11)\n"
+      "assert(('bottom_left'):find('right') == nil)\nassert(('a.b'):find('.', 1, true) == 2)\n"
+      "assert(('abab'):find('ab', 2) == 3 and ('abab'):find('ab', -2) == 3 and ('abab'):find('ab', -9) == 1)\n"
+      "assert(('abab'):find('ab', 4) == nil and ('ab'):find('', 3) == 3 and ('ab'):find('', 4) == nil)\n"
+      "local at, before = ('ab'):find('')\nassert(at == 1 and before == 0)");
+  EXPECT_EQ(run_statements("\nlocal at = ('a1'):find('%d')"),
+            "preset.lua:2: error: string.find: '%d' is a pattern, which may run without end; allowed: plain text; with "
+            "true behind it every sign stands for itself: text:find(\"a.b\", 1, true)");
+}
 
 TEST(Sandbox, WhatIsNotThereSaysWhy) {
   EXPECT_EQ(run_statements("io.open(\"/etc/passwd\")"),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // KernelCompiler: reflection, errors, caches in memory and on disk, threads.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -169,8 +170,10 @@ TEST_F(KernelCache, ComesBackFromDisk) {
 TEST_F(KernelCache, TheSourcesOfTheCompilerAreInItsKey) {
   const fs::path sources = files_.root() / "sources", made = files_.root() / "hash.cpp";
   const auto hash = [&] {
-    const std::string command = std::string(AFTERGLOW_CMAKE " -D folder='") + sources.string() + "' -D output='" +
-                                made.string() + "' -P " AFTERGLOW_PROJECT_FOLDER "/cmake/source_hash.cmake";
+    const std::string command =
+        fmt::format("'{}' -D root='{}' -D 'globs=*.cpp;*.h' -D template='{}/source_hash.cpp.in' -D output='{}' -P '{}'",
+                    AFTERGLOW_CMAKE, sources.string(), sources.string(), made.string(),
+                    AFTERGLOW_PROJECT_FOLDER "/cmake/source_hash.cmake");
     EXPECT_EQ(std::system(command.c_str()), 0);
     const std::string text = read_file(made).value();
     const std::size_t begin = text.find('"', text.find("kShaderSourceHash")) + 1;

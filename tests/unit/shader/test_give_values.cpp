@@ -101,6 +101,19 @@ TEST(GiveValues, WhatIsAlwaysGivenIsNotTold) {
                    "  return vec4(y[3], y[2], y[1], y[0]);\n}\n")
                   .warnings,
               IsEmpty());
+  // Sectors of a filter: all are given, some are added to, and components of each are read.
+  EXPECT_THAT(made("vec4 apply(vec4 color) {\n  vec4 m[8];\n  for (int k = 0; k < 8; k++) m[k] = vec4(0.0);\n"
+                   "  for (int y = 0; y <= int(color.r * 4.0); y++)\n"
+                   "    for (int k = 0; k < 8; k++) m[k] += vec4(color.rgb, 1.0);\n  vec4 o = vec4(0.0);\n"
+                   "  for (int k = 0; k < 8; k++) o += vec4(m[k].rgb / max(m[k].w, 1e-6), 1.0);\n  return o;\n}\n")
+                  .warnings,
+              IsEmpty());
+  EXPECT_THAT(made("vec4 apply(vec4 color) {\n  vec4 m[4];\n  for (int k = 0; k < 3; k++) m[k] = vec4(0.0);\n"
+                   "  for (int y = 0; y <= int(color.r * 4.0); y++)\n"
+                   "    for (int k = 0; k < 3; k++) m[k] += vec4(color.rgb, 1.0);\n"
+                   "  return vec4(m[0].rgb / m[1].w, m[3].w);\n}\n")
+                  .warnings,
+              ElementsAre(read_at(2, "m")));
   EXPECT_THAT(made("vec4 apply(vec4 color) {\n  float y[3], sum = 0.0;\n  y[0] = 1.0; y[2] = color.r; y[1] = color.g;\n"
                    "  for (int i = 0; i < 3; ++i) sum += y[i];\n  return vec4(sum);\n}\n")
                   .warnings,

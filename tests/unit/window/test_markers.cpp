@@ -120,6 +120,22 @@ TEST_F(MarkersTest, FilesThatAreBrokenOrCannotBeWrittenAreNoEnd) {
   EXPECT_TRUE(without.toggle(1).value());
 }
 
+TEST_F(MarkersTest, OfTwoWindowsBothStay) {
+  touch("a", 1001, 1020);
+  Markers one(kept()), other(kept());
+  for (Markers* markers : {&one, &other}) markers->follow(open({"a.####.exr"}));
+  EXPECT_TRUE(one.toggle(5).value());
+  EXPECT_TRUE(other.toggle(9).value());
+  EXPECT_THAT(positions(other), ElementsAre(5, 9));
+  EXPECT_FALSE(one.toggle(5).value());
+  EXPECT_THAT(positions(one), ElementsAre(9));
+  EXPECT_TRUE(one.toggle(2).value());
+  EXPECT_FALSE(other.toggle(9).value());
+  Markers later(kept());
+  later.follow(open({"a.####.exr"}));
+  EXPECT_THAT(positions(later), ElementsAre(2));
+}
+
 TEST_F(MarkersTest, NumbersOverTheTimelineNeverOverprint) {
   touch("a", 95, 1110);
   touch("b", 1, 7);
@@ -162,6 +178,17 @@ TEST_F(MarkersTest, NumbersAreRound) {
                                   "1055", "1060", "1065", "1070", "1075", "1080", "1085", "1090", "1095", "1100"));
   EXPECT_EQ(ticks.size(), 100u);
   EXPECT_FLOAT_EQ(ticks.front().x, 5);  // the middle of frame 1001
+}
+
+TEST_F(MarkersTest, NumbersAreRoundBelowZeroToo) {
+  for (int frame = -25; frame <= 25; ++frame)
+    std::ofstream(folder_ / fmt::format("c.{}{:04}.exr", frame < 0 ? "-" : "", std::abs(frame)));
+  const auto ticks = ruler_ticks(
+      *open({"c.####.exr"}), {500, 10, 5, [](const std::string& t) { return 9.0f * static_cast<float>(t.size()); }});
+  std::vector<std::string> labels;
+  for (const RulerTick& tick : ticks)
+    if (!tick.label.empty()) labels.push_back(tick.label);
+  EXPECT_THAT(labels, ElementsAre("-25", "-20", "-15", "-10", "-5", "0", "5", "10", "15", "20", "25"));
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "shader/held_divisors.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace afterglow {
+namespace {
+
+bool divides(spv::Op op) {
+  return op == spv::OpSDiv || op == spv::OpUDiv || op == spv::OpSRem || op == spv::OpSMod || op == spv::OpUMod;
+}
+
+class Divisors {
+ public:
+  explicit Divisors(Module& module) : module_(module) {
+    for (const auto& i : module_.code) {
+      if (i.op == spv::OpTypeBool) bools_[1] = i.words[1];
+      if (i.op == spv::OpTypeVector) vectors_[i.words[1]] = {i.words[2], i.words[3]};
+      if (i.op == spv::OpConstant && i.words.size() == 4 && i.words[3] != 0) never_zero_.insert(i.result);
+      const bool all = std::all_of(i.words.begin() + std::min<std::ptrdiff_t>(3, std::ssize(i.words)), i.words.end(),
+                                   [&](std::uint32_t id) { return never_zero_.contains(id); });
+      if (i.op == spv::OpConstantComposite && all) never_zero_.insert(i.result);
+    }
+    for (const auto& [id, vector] : vectors_)
+      if (vector.first == bools_[1]) bools_[vector.second] = id;
+  }
+
+  void hold() {
+    std::vector<Instruction> code;
+    for (Instruction& i : module_.code) {
+      constexpr std::size_t kDivisor = 4;
+      if (divides(i.op) && !never_zero_.contains(i.words[kDivisor])) {
+        const std::uint32_t divisor = i.words[kDivisor];
+        const std::uint32_t is_zero = module_.fresh(), held = module_.fresh();
+        code.push_back(Instruction::of_ids(spv::OpIEqual, bool_of(i.type), is_zero, {divisor, zero_of(i.type)}));
+        code.push_back(Instruction::of_ids(spv::OpSelect, i.type, held, {is_zero, one_of(i.type), divisor}));
+        i.words[kDivisor] = held;
+      }
+      code.push_back(std::move(i));
+    }
+    module_.code = std::move(code);
+    const auto first = std::ranges::find(module_.code, spv::OpFunction, &Instruction::op);
+    module_.code.insert(first, declared_.begin(), declared_.end());
+  }
+
+ private:
+  std::uint32_t bool_of(std::uint32_t type) {
+    const auto vector = vectors_.find(type);
+    const std::uint32_t count = vector == vectors_.end() ? 1 : vector->second.second;
+    std::uint32_t& found = bools_[count];
+    if (found != 0) return found;
+    found = module_.fresh();
+    if (count == 1)
+      declared_.push_back(Instruction::of_words(spv::OpTypeBool, {found}));
+    else
+      declared_.push_back(Instruction::of_words(spv::OpTypeVector, {found, bool_of(vector->second.first), count}));
+    return found;
+  }
+  std::uint32_t zero_of(std::uint32_t type) {
+    std::uint32_t& zero = zeros_[type];
+    if (zero == 0) {
+      zero = module_.fresh();
+      declared_.push_back(Instruction::of_ids(spv::OpConstantNull, type, zero, {}));
+    }
+    return zero;
+  }
+  std::uint32_t one_of(std::uint32_t type) {
+    if (const auto known = ones_.find(type); known != ones_.end()) return known->second;
+    const auto vector = vectors_.find(type);
+    std::uint32_t one = 0;
+    if (vector == vectors_.end()) {
+      one = module_.fresh();
+      Instruction constant = Instruction::of_words(spv::OpConstant, {type, one, 1});
+      constant.type = type;
+      constant.result = one;
+      constant.ids = {1, 2};
+      declared_.push_back(std::move(constant));
+    } else {
+      const Words parts(vector->second.second, one_of(vector->second.first));
+      one = module_.fresh();
+      declared_.push_back(Instruction::of_ids(spv::OpConstantComposite, type, one, parts));
+    }
+    return ones_[type] = one;
+  }
+
+  Module& module_;
+  std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> vectors_;  ///< id → type of its parts, their number
+  std::map<std::uint32_t, std::uint32_t> bools_;                              ///< number of parts → type
+  std::map<std::uint32_t, std::uint32_t> zeros_, ones_;                       ///< type → constant
+  std::set<std::uint32_t> never_zero_;                                        ///< constants
+  std::vector<Instruction> declared_;
+};
+
+}  // namespace
+
+void hold_divisors(Module& module) { Divisors(module).hold(); }
+
+}  // namespace afterglow
