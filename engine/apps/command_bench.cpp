@@ -53,6 +53,7 @@ Result<void> measure_times(const BenchArguments& a, Device& device, bench::Repor
     AFTERGLOW_TRY(goals, bench::load_goals(a.goals));
   }
   AFTERGLOW_TRY(const bench::MatrixRequest request, a.matrix());
+  AFTERGLOW_CHECK(bench::check_report_folder(a.folder));  // before minutes of measuring
   const auto step =
       steps(console, request.cells() + goals.size(), [&report] { return report.cells.size() + report.goals.size(); });
   AFTERGLOW_CHECK(bench::measure_matrix(device, request, report, console.diagnostics(), step));
@@ -70,6 +71,7 @@ Result<void> measure_edits(const BenchArguments& a, Device& device, Console& con
   AFTERGLOW_TRY(const auto presets, a.files());
   ReloadBenchOptions options;
   AFTERGLOW_TRY(options.stack, a.stack());
+  AFTERGLOW_CHECK(bench::check_report_folder(a.folder));
   if (a.quick) options.edits = 3;
   const auto step = steps(console, presets.size() * sizes.size() * static_cast<std::size_t>(2 * options.edits));
   for (const auto& preset : presets)
@@ -88,6 +90,7 @@ Result<void> measure_edits(const BenchArguments& a, Device& device, Console& con
 /// --temporal: shots and resolutions instead of times.
 Result<void> measure_steadiness(const BenchArguments& a, bench::Report& report, Console& console) {
   AFTERGLOW_TRY(const bench::StabilityRequest request, a.shots());
+  AFTERGLOW_CHECK(bench::check_report_folder(a.folder));
   auto measured =
       bench::measure_stability(request, report, console.diagnostics(), steps(console, bench::steps_of(request)));
   console.end_progress();
@@ -98,7 +101,6 @@ Result<void> measure_steadiness(const BenchArguments& a, bench::Report& report, 
 
 Result<void> run_bench(const BenchArguments& a, Console& console) {
   AFTERGLOW_CHECK(a.check());
-  AFTERGLOW_CHECK(bench::make_report_folder(a.folder));  // before minutes of measuring
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
   AFTERGLOW_TRY(auto device, Device::create(asked, console.diagnostics()));
   if (a.reload) return measure_edits(a, *device, console);

@@ -196,6 +196,8 @@ std::string reload_bench_text(const ReloadBench& bench) {
 
 Result<void> write_reload_bench(const ReloadBench& bench, const std::filesystem::path& preset,
                                 const std::string& device, const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
   const auto [width, height] = bench.size;
   return write_file_atomically(folder / fmt::format("reload-{}-{}x{}.json", preset.stem().string(), width, height),
                                json_of(bench, device));

@@ -26,8 +26,8 @@ std::string front_svg(const Report& report, const Cell& cell);
 
 /// bench.json, bench.csv, bench.html, front.svg (of the cell with most points) and, of what is steady, stability.csv
 /// and temporal.svg in `folder`, which is made. Errors: io.
-/// The folder of a report, and those above it. Errors: io.
-Result<void> make_report_folder(const std::filesystem::path& folder);
+/// Whether a report can be written there, before anything is measured. Makes nothing. Errors: io.
+Result<void> check_report_folder(const std::filesystem::path& folder);
 Result<void> write_report(const Report& report, const std::filesystem::path& folder);
 
 /// One point of two reports, medians in milliseconds.

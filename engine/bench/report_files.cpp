@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <string_view>
 
 #include "bench/page.h"
@@ -9,6 +13,7 @@
 #include "core/file.h"
 
 namespace afterglow::bench {
+namespace fs = std::filesystem;
 namespace {
 
 /// The first `mark` of `text` replaced.
@@ -34,15 +39,24 @@ std::string report_html(const Report& report) {
   return filled(std::move(page), "@chart@", kPageChart);
 }
 
-Result<void> make_report_folder(const std::filesystem::path& folder) {
+Result<void> check_report_folder(const fs::path& folder) {
   std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (!problem && folder.empty()) problem = std::make_error_code(std::errc::no_such_file_or_directory);
-  if (!problem) return {};
-  return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
+  fs::path there = fs::absolute(folder, problem);
+  while (there.has_relative_path() && !fs::exists(there, problem)) there = there.parent_path();
+  int why = 0;
+  if (folder.empty() || !fs::is_directory(there, problem))
+    why = ENOTDIR;
+  else if (access(there.c_str(), W_OK | X_OK) != 0)
+    why = errno;
+  if (why == 0) return {};
+  return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", std::strerror(why)), folder.string()};
 }
 
-Result<void> write_report(const Report& report, const std::filesystem::path& folder) {
+Result<void> write_report(const Report& report, const fs::path& folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem)
+    return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.json", report_json(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.csv", report_csv(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.html", report_html(report)));

@@ -90,13 +90,21 @@ TEST_F(Bench, MistakesAreSaidBeforeAnythingIsMeasured) {
     std::vector<std::string> arguments;
     int exit_code;
     const char* says;
-  } kCases[] = {{{"bench"}, kUsage, "nothing to measure"},
-                {{"bench", "look.lua", "--variants", "plain16"}, kUsage, "did you mean 'plain16f'?"},
-                {{"bench", "look.lua", "--sizes", "12"}, kUsage, "no size"},
-                {{"bench", "look.lua", "--quick", "--vary", "tone_mapping.mode"}, kUsage, "varies nothing"},
-                {{"bench", "none.lua", "--quick"}, kScript, "none.lua"},
-                {{"bench", "look.lua", "--quick", "--calibration", "none.json"}, kFiles, "none.json"},
-                {{"bench", "--goals", "none.json"}, kFiles, "none.json"}};
+  } kCases[] = {
+      {{"bench"}, kUsage, "nothing to measure"},
+      {{"bench", "look.lua", "--variants", "plain16"}, kUsage, "did you mean 'plain16f'?"},
+      {{"bench", "look.lua", "--sizes", "12"}, kUsage, "no size"},
+      {{"bench", "look.lua", "--quick", "--vary", "tone_mapping.mode"}, kUsage, "varies nothing"},
+      {{"bench", "none.lua", "--quick"}, kScript, "none.lua"},
+      {{"bench", "look.lua", "--quick", "--calibration", "none.json"}, kFiles, "none.json"},
+      {{"bench", "look.lua", "--quick", "--compare", "none.json"}, kFiles, "none.json"},
+      {{"bench", "look.lua", "--quick", "--compare", "look.lua"}, kFiles, "is no report of `afterglow bench`"},
+      {{"bench", "look.lua", "--quick", "-o", "look.lua/x"}, kFiles, "cannot make the folder"},
+      {{"bench", "look.lua", "--temporal", "-o", "look.lua/x"}, kFiles, "cannot make the folder"},
+      {{"bench", "look.lua", "--reload", "-o", "look.lua/x"}, kFiles, "cannot make the folder"},
+      {{"bench", "look.lua", "--temporal", "--compare", "old.json"}, kUsage, "--compare"},
+      {{"bench", "look.lua", "--reload", "--vary", "bloom.intensity=1"}, kUsage, "--vary"},
+      {{"bench", "--goals", "none.json"}, kFiles, "none.json"}};
   for (const auto& c : kCases) {
     const Outcome outcome = run(c.arguments);
     EXPECT_EQ(outcome.exit_code, c.exit_code) << c.says << outcome.err;

@@ -16,7 +16,7 @@ Scene stress_scene(Size size, bool below = false) {
   std::mt19937 generator(51);
   std::uniform_int_distribution<std::size_t> pick(0, std::size(kValues) - 1);
   const auto any = [&] { return kValues[pick(generator)]; };
-  const auto light = [&] { return below && generator() % 3 == 0 ? -any() : any(); };
+  const auto light = [&] { return below && generator() % 3 == 0 ? -std::min(any(), 65504.0) : any(); };
   Scene scene{"stress", DoubleImage(size), DoubleImage(size), DoubleImage(size)};
   for (std::size_t i = 0; i < scene.source.pixels.size(); ++i) {
     scene.source.pixels[i] = Rgba(light(), light(), light(), i % 3 * 0.5);
