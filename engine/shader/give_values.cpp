@@ -153,19 +153,12 @@ bool is_filled_by_index(const Module& module, std::uint32_t variable, const std:
   return any_index && stored;
 }
 
-/// Follows a vector or an array while its components are given one by one.
-class PartUses {
+/// Follows a vector while its components are given one by one.
+class VectorUses {
  public:
-  explicit PartUses(const Module& module) : module_(module) {
-    constexpr std::uint32_t kMost = 31;  // elements of an array, which are bits here
-    std::map<std::uint32_t, std::uint32_t> numbers;
-    for (const auto& i : module.code) {
-      if (i.op == spv::OpConstant && i.words.size() == 4) numbers[i.result] = i.words[3];
+  explicit VectorUses(const Module& module) : module_(module) {
+    for (const auto& i : module.code)
       if (i.op == spv::OpTypeVector) whole_[i.words[1]] = (1u << i.words[3]) - 1;
-      if (i.op != spv::OpTypeArray) continue;
-      const auto length = numbers.find(i.words[3]);
-      if (length != numbers.end() && length->second <= kMost) whole_[i.words[1]] = (1u << length->second) - 1;
-    }
   }
 
   /// Whether something of the value that `load` gives is used.
@@ -177,7 +170,7 @@ class PartUses {
     for (const auto& i : module_.code) {
       const bool uses = i.result != id && std::ranges::any_of(i.ids, [&](auto word) { return i.words[word] == id; });
       if (!uses || i.op == spv::OpName || i.op == spv::OpDecorate) continue;
-      if (i.op == spv::OpCompositeExtract && i.words.size() >= 5 && (given >> i.words[4] & 1) != 0) continue;
+      if (i.op == spv::OpCompositeExtract && i.words.size() == 5 && (given >> i.words[4] & 1) != 0) continue;
       const bool inserts =
           i.op == spv::OpCompositeInsert && i.words.size() == 6 && i.words[4] == id && i.words[3] != id;
       if (!inserts) return true;
@@ -188,7 +181,7 @@ class PartUses {
   }
 
   const Module& module_;
-  std::map<std::uint32_t, std::uint32_t> whole_;  ///< type → a bit for each component
+  std::map<std::uint32_t, std::uint32_t> whole_;  ///< vector type → a bit for each component
 };
 
 /// The numbers of marks whose value is used. For that each variable gets the value of an input of its own; what is left
@@ -258,13 +251,15 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   spvtools::Optimizer optimizer(kSpirvEnvironment);
   optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass()).RegisterPass(spvtools::CreateMergeReturnPass());
   add_inlining_passes(optimizer);
-  optimizer.RegisterPass(spvtools::CreateSSARewritePass())
+  // A variable whose parts were pointed at is followed once those pointers, unused by now, are gone.
+  optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
   std::vector<std::uint32_t> read;
   const auto left = run_passes(optimizer, module);
   if (!left) return read;
-  const PartUses uses(*left);
+  const VectorUses uses(*left);
   for (const auto& i : left->code) {
     if (i.op != spv::OpLoad && i.op != spv::OpAccessChain) continue;
     const auto found = sources.find(i.words[3]);
