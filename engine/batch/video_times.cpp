@@ -71,7 +71,7 @@ VideoTime VideoTimes::time_of(int frame) {
 }
 
 std::optional<VideoTime> VideoTimes::held(std::size_t frames, VideoTime last) {
-  if (movie_) return wanted_ > last_ ? std::optional(time_of(wanted_)) : std::nullopt;
+  if (movie_) return frames > 0 && wanted_ > last_ ? std::optional(time_of(wanted_)) : std::nullopt;
   const auto end = static_cast<long long>(frames) - 1;
   return end > last.pts ? std::optional(VideoTime{end, 1}) : std::nullopt;
 }

@@ -20,7 +20,8 @@ class VideoTimes {
   void begin(const FrameJob& first, const FrameJob& last, VideoPlan& plan);
   /// `index`: its place among those that were asked for. Errors: usage (frames of several videos, or backwards).
   Result<VideoTime> of(const FrameJob& job, std::size_t index);
-  /// That of the last place of `frames`, where the one that was written last is to stay until then.
+  /// That of the last place of `frames`, where the one that was written last is to stay until then; 0: of none, since
+  /// the video is to be shorter.
   std::optional<VideoTime> held(std::size_t frames, VideoTime last);
   /// The last frame of their video was among them, or they have none.
   bool whole() const { return whole_; }

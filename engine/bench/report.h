@@ -24,10 +24,10 @@ std::string report_html(const Report& report);
 /// Run time against error of one cell, with the front drawn.
 std::string front_svg(const Report& report, const Cell& cell);
 
-/// bench.json, bench.csv, bench.html, front.svg (of the cell with most points) and, of what is steady, stability.csv
-/// and temporal.svg in `folder`, which is made. Errors: io.
 /// Whether a report can be written there, before anything is measured. Makes nothing. Errors: io.
 Result<void> check_report_folder(const std::filesystem::path& folder);
+/// bench.json, bench.csv, bench.html, front.svg (of the cell with most points) and, of what is steady, stability.csv
+/// and temporal.svg in `folder`, which is made. Errors: io.
 Result<void> write_report(const Report& report, const std::filesystem::path& folder);
 
 /// One point of two reports, medians in milliseconds.

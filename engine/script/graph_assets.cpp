@@ -50,6 +50,7 @@ std::array<float, 4> pixel_of(TableReader& table, const Value& value, std::size_
 // The image of g:image { pixels = …, width = … }; throws.
 std::shared_ptr<const ImageData> pixels_of(lua_State* lua, TableReader& table) {
   constexpr std::size_t kMost = 65536, kLongestRow = 8192;
+  constexpr std::uint64_t kCost = 16;  // instructions that a pixel counts as: it lives outside of Lua's memory
   const auto fail = [&](const char* key, const std::string& why, const std::string& allowed) {
     table.fail(failure(fmt::format("{}: {}", table.what(), why), {key}, allowed));
     table.finish("image");
@@ -67,7 +68,7 @@ std::shared_ptr<const ImageData> pixels_of(lua_State* lua, TableReader& table) {
   if (!table.failed() && (width == 0 || count % width != 0 || width > kLongestRow || count / width > kLongestRow))
     fail("width", fmt::format("{} pixels are no whole rows of {}", count, width),
          fmt::format("a width that divides their number; sides up to {}", kLongestRow));
-  Sandbox::of(lua).charge(count);
+  Sandbox::of(lua).charge(count * kCost);
   std::vector<float> pixels;
   pixels.reserve(count * 4);
   for (std::size_t i = 1; i <= count && !table.failed(); ++i) {
