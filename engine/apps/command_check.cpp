@@ -14,7 +14,9 @@
 #include "apps/output.h"
 #include "apps/setting_text.h"
 #include "apps/space_text.h"
+#include "core/file.h"
 #include "core/json_text.h"
+#include "core/key_finder.h"
 #include "core/printable.h"
 #include "core/table.h"
 #include "script/explanation.h"
@@ -74,6 +76,19 @@ std::vector<std::string> all_notes(const Look& look, const std::vector<std::stri
   for (const auto& [effect, setting] : look.build.unread)
     notes.push_back(fmt::format("note: setting '{}' of effect '{}' is never read", setting, effect));
   return notes;
+}
+
+/// Settings and other keys that a table of the look's scripts gives twice.
+std::vector<std::string> repeated_key_warnings(const Look& look) {
+  std::vector<std::string> warnings;
+  for (const auto& script : look.preset->scripts()) {
+    const auto text = read_file(script);
+    if (!text) continue;  // a preset in a pack, or gone since
+    for (const auto& [key, first, line] : repeated_keys(*text))
+      warnings.push_back(fmt::format("{}:{}: '{}' is given twice in one table; this one counts, not that of line {}",
+                                     script.string(), line, key, first));
+  }
+  return warnings;
 }
 
 std::vector<std::string> shadow_notes(const Look& look) {
@@ -152,6 +167,7 @@ Result<void> run_check(const CheckArguments& arguments, Console& console) {
   auto [shaders, not_compiled] = check_shaders(look);
   auto& [errors, warnings] = shaders;
   for (const auto& warning : warnings) console.diagnostics().warn(warning);
+  for (const auto& warning : repeated_key_warnings(look)) console.diagnostics().warn(warning);
   for (const auto& warning : check_odd_sizes(look)) console.diagnostics().warn(warning);
   if (!errors.empty()) {
     for (std::size_t i = 0; i + 1 < errors.size(); ++i) console.error(errors[i]);

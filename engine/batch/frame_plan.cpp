@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "image/metadata.h"
 #include "image/movie.h"
+#include "session/picture_inputs.h"
 
 namespace afterglow {
 
@@ -121,12 +122,7 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
   for (const auto& name : header.auxiliary)
     if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
   context.layers = header.layers;
-  context.metadata = {header.facts, &header.facts->metadata};
-  context.picture = header.facts->file;
-  if (!header.facts->mattes.empty()) {
-    context.matte_metadata = {header.facts, &header.facts->matte_metadata};
-    context.mattes = header.facts->mattes;
-  }
+  note_files(header.facts, context);
   context.frame = job.frame;
   context.fps = job.fps > 0 ? job.fps : options_.fps;
   context.time = job.time.value_or(job.frame / options_.fps);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/key_finder.h"
 
+#include <map>
 #include <vector>
 
 #include "core/lua_text.h"
@@ -75,6 +76,22 @@ class Finder {
 int line_of_key(std::string_view text, int call_line, std::string_view function, const KeyPath& key) {
   if (key.empty()) return call_line;
   return Finder(text, key).find(call_line, function);
+}
+
+std::vector<RepeatedKey> repeated_keys(std::string_view text) {
+  const LuaText script(text);
+  std::vector<RepeatedKey> out;
+  for (std::size_t open = 0; open < script.size(); ++open) {
+    if (!script.is(open, "{") || script.partner(open) == LuaText::kNone) continue;
+    std::map<std::string, int> lines;
+    for (const auto& item : script.items(open)) {
+      if (item.key.empty() || item.key.starts_with('#')) continue;
+      const int line = script[item.first].line;
+      const auto [known, fresh] = lines.emplace(item.key, line);
+      if (!fresh) out.push_back({item.key, known->second, line});
+    }
+  }
+  return out;
 }
 
 }  // namespace afterglow

@@ -18,4 +18,12 @@ using KeyPath = std::vector<std::string>;
 /// to the deepest part of the path that was found, then to `call_line`.
 int line_of_key(std::string_view text, int call_line, std::string_view function, const KeyPath& key);
 
+/// A name that one table constructor gives twice: Lua takes the last one, without a word.
+struct RepeatedKey {
+  std::string key;
+  int first = 0, line = 0;  ///< where it stands first, and once more
+};
+/// Of a script, in the order of the text.
+std::vector<RepeatedKey> repeated_keys(std::string_view text);
+
 }  // namespace afterglow

@@ -48,17 +48,21 @@ void warn_if_absent(const CryptomatteObject& object, const Picture& picture, Dia
                                       object.layer, tidy_message(object.name, 100)));
 }
 
+void note_files(const std::shared_ptr<const FileFacts>& facts, BuildContext& context) {
+  if (!facts) return;
+  context.metadata = {facts, &facts->metadata};
+  context.picture = facts->file;
+  if (facts->mattes.empty()) return;
+  context.matte_metadata = {facts, &facts->matte_metadata};
+  context.mattes = facts->mattes;
+}
+
 BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
   context.layers = picture.layers;
-  if (picture.facts) context.metadata = {picture.facts, &picture.facts->metadata};
-  if (picture.facts) context.picture = picture.facts->file;
-  if (picture.facts && !picture.facts->mattes.empty()) {
-    context.matte_metadata = {picture.facts, &picture.facts->matte_metadata};
-    context.mattes = picture.facts->mattes;
-  }
+  note_files(picture.facts, context);
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
   return context;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,9 @@ std::map<std::string, HostImage> picture_inputs(const Picture& picture, const Gr
 /// Warns of an object whose id no pixel of the picture's cryptomattes has: its mask selects nothing.
 void warn_if_absent(const CryptomatteObject& object, const Picture& picture, Diagnostics& diagnostics);
 
-/// `frame` with the sizes of the picture.
+/// What scripts may know of the picture's files, which `facts` are of; null: nothing.
+void note_files(const std::shared_ptr<const FileFacts>& facts, BuildContext& context);
+/// `frame` with the sizes and files of the picture.
 BuildContext context_of(const Picture& picture, const BuildContext& frame);
 
 }  // namespace afterglow

@@ -239,6 +239,18 @@ TEST_F(Inspect, CheckTellsOfAnAlphaThatIsANumber) {
       << "where there is nothing";
 }
 
+TEST_F(Inspect, CheckReportsWhatIsGivenTwice) {
+  write("twice.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.bloom { intensity = 0.3,\n    threshold = 1,\n"
+        "    intensity = 0.5 } }\n");
+  const Outcome outcome = run({"check", "twice.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, ContainsRegex("twice.lua:5: 'intensity' is given twice in one table; this one counts, not "
+                                         "that of line 3"));
+  EXPECT_THAT(outcome.out, HasSubstr("no errors, 1 warning"));
+  EXPECT_THAT(run({"check", "look.lua"}).err, testing::IsEmpty());
+}
+
 TEST_F(Inspect, CheckReportsShadowedBuiltIns) {
   write("effects/tone_mapping.lua",
         "local fx = require \"afterglow\"\n"

@@ -6,6 +6,7 @@
 
 #include "bad_effects.h"
 #include "core/file.h"
+#include "core/process.h"
 #include "stress/reproducer.h"
 
 namespace afterglow::stress {
@@ -45,7 +46,8 @@ TEST(StressReproducer, ComesBackToTheBit) {
   const auto text = nlohmann::json::parse(read_file(place / "case.json").value());
   EXPECT_EQ(text["found"]["seed"], 7);
   EXPECT_THAT(std::string(text["command"]), testing::HasSubstr("afterglow stress --repeat '"));
-  EXPECT_THAT(read_file(place / "README.txt").value(), testing::HasSubstr("--path '" + folder.path().string() + "'"));
+  EXPECT_THAT(read_file(place / "README.txt").value(),
+              testing::HasSubstr("--path " + shell_word(folder.path().string()) + "\n"));
   EXPECT_EQ(read_file(place / "preset.lua").value(), kept.look.text());
 }
 

@@ -52,5 +52,21 @@ TEST(KeyFinder, BrokenTextIsNoTrouble) {
 
 TEST(KeyFinder, ARepeatedKeyMeansItsLastPlace) { EXPECT_EQ(line_of_key("f {\n a = 1,\n a = 2 }", 1, "f", {"a"}), 3); }
 
+TEST(RepeatedKeys, OfOneTableAreFound) {
+  const auto found = [](std::string_view text) {
+    std::string out;
+    for (const auto& [key, first, line] : repeated_keys(text))
+      out += (out.empty() ? "" : " ") + key + ":" + std::to_string(first) + ":" + std::to_string(line);
+    return out;
+  };
+  EXPECT_EQ(found("fx.v { n = 1,\n m = 2,\n n = 3 }"), "n:1:3");
+  EXPECT_EQ(found("fx.v { n = 1, ['n'] = 2 }"), "n:1:1");
+  EXPECT_EQ(found("fx.v { n = 1, at = { n = 2 } }, fx.v { n = 3 }"), "");
+  EXPECT_EQ(found("settings = {\n a = fx.int { min = 1,\n max = 2,\n min = 3 },\n a = 1 }"), "a:2:5 min:2:4");
+  EXPECT_EQ(found("{ 1, 2, [1] = 3, [n] = 1, [n] = 2, -- n = 1\n n = '{ n = 2 }' }"), "");
+  EXPECT_EQ(found("{ f = function() local n = 1; n = 2 end, n = 3, { n = n == 1, n == 2 } }"), "");
+  EXPECT_EQ(found("fx.v { n = 1, n = 2"), "");
+}
+
 }  // namespace
 }  // namespace afterglow::script
