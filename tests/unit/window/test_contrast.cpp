@@ -250,10 +250,10 @@ TEST_F(Contrast, OfEveryPairOfTheTheme) {
 TEST_F(Contrast, ClosingAsksAboutArguments) {
   EXPECT_EQ(window_.unsaved(*player_, true), "");
   player_->set("", "hero", {SettingType::text, {}, "lamp"});
-  EXPECT_EQ(window_.unsaved(*player_, true), "1 argument, which no preset holds: they are given by --arg 'hero=lamp'");
+  EXPECT_EQ(window_.unsaved(*player_, true), "1 argument, which no preset holds: they are given by --arg hero=lamp");
   player_->set("bloom", "intensity", {SettingType::number, {0.5}, ""});
   EXPECT_EQ(window_.unsaved(*player_, false),
-            "1 setting of look.lua and 1 argument, which no preset holds: they are given by --arg 'hero=lamp'");
+            "1 setting of look.lua and 1 argument, which no preset holds: they are given by --arg hero=lamp");
 }
 
 }  // namespace
