@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -356,6 +357,24 @@ TEST_F(Following, FramesAtAnotherRateThanTheFileAreSilent) {
 }
 
 #ifdef AFTERGLOW_HAS_SOUND
+/// ALSA's, and how many samples a channel it was given.
+class CountedDevice : public SoundDevice {
+ public:
+  CountedDevice(std::unique_ptr<SoundDevice> device, std::atomic<std::size_t>& written)
+      : device_(std::move(device)), written_(written) {}
+  Result<void> write(std::span<const float> samples) override {
+    auto done = device_->write(samples);
+    written_ += samples.size() / SoundTrack::kChannels;
+    return done;
+  }
+  double delay() override { return device_->delay(); }
+  void drop() override { device_->drop(); }
+
+ private:
+  std::unique_ptr<SoundDevice> device_;
+  std::atomic<std::size_t>& written_;
+};
+
 /// ALSA itself, into a file. The clock stands: exactly what is kept ahead is written.
 TEST_F(Sounds, AlsaGetsTheSamplesOfEachPlace) {
   const std::string raw = path("heard.raw"), config = path("asound.conf");
@@ -365,14 +384,18 @@ TEST_F(Sounds, AlsaGetsTheSamplesOfEachPlace) {
   ASSERT_TRUE(movie);
   std::string said;
   {
+    std::atomic<std::size_t> written = 0;
+    const auto counted = [&]() -> Result<std::unique_ptr<SoundDevice>> {
+      AFTERGLOW_TRY(auto device, open_sound_device());
+      return std::unique_ptr<SoundDevice>(std::make_unique<CountedDevice>(std::move(device), written));
+    };
     Sound sound(
-        {}, [] { return 10.0; }, [&](const std::string& why) { said = why; });
-    std::uintmax_t written = 0;
-    std::error_code none;
+        {.open_device = counted}, [] { return 10.0; }, [&](const std::string& why) { said = why; });
+    std::size_t wanted = 0;
     for (const double from : {2.0, 5.0}) {
       sound.play("a.mov", from, [&] { return SoundTrack::open(*movie); });
-      written += 9600 * 8;
-      while (std::filesystem::file_size(raw, none) != written && sound.failure().empty()) std::this_thread::yield();
+      wanted += 9600;
+      while ((written < wanted || !sound.heard(10.0)) && sound.failure().empty()) std::this_thread::yield();
       EXPECT_DOUBLE_EQ(sound.heard(10.0).value_or(0), from) << "the clock stands";
     }
   }
