@@ -42,7 +42,7 @@ Result<void*> load_module(const std::string& name, const char* entry) {
       continue;
     }
     const auto shapes = reinterpret_cast<const char* (*)()>(dlsym(library, "afterglow_module_shapes"));
-    if (!shapes || std::string_view(shapes()) != kModuleShapes) {
+    if (!shapes || std::string_view(shapes()) != module_shapes()) {
       why = file.string() + " is of another build of Afterglow; was it updated? Start the program anew";
       continue;
     }

@@ -5,13 +5,13 @@
 
 namespace afterglow {
 
-/// A hash of all headers that the program shares with its modules.
-extern const char* const kModuleShapes;
+/// A hash of all headers that the program shares with its modules; each has its own.
+__attribute__((visibility("hidden"))) const char* module_shapes();
 
 }  // namespace afterglow
 
 /// Once in each module: what it was built from, for load_module.
 #define AFTERGLOW_MODULE_SHAPES                                                             \
   extern "C" __attribute__((visibility("default"))) const char* afterglow_module_shapes() { \
-    return afterglow::kModuleShapes;                                                        \
+    return afterglow::module_shapes();                                                      \
   }
