@@ -211,14 +211,15 @@ bool Sound::write_some(const Wish& wish) {
   }
   pace_.frames -= kSoundBlock;
   // Devices that take everything at once say that nothing waits. What is written ahead of the clock is not heard yet.
-  const double ahead = kAhead - pace_.frames, said = device_->delay(), delay = std::max(said, ahead);
+  const double said = device_->delay(), written_at = clock_();
+  const double ahead = kAhead - pace_.frames - (written_at - now) * SoundTrack::kRate, delay = std::max(said, ahead);
   pace_.by_clock = ahead > said + 2 * kSoundBlock;
   double seconds = (static_cast<double>(cursor_) - delay) / SoundTrack::kRate;
   // What was written before the loop's beginning is heard up to its end.
   const bool before = around_ && delay > static_cast<double>(since_);
   if (before) seconds += around_->until - around_->from;
   const std::lock_guard lock(mutex_);
-  moment_ = {wish.number, seconds, clock_(), before ? around_ : std::nullopt};
+  moment_ = {wish.number, seconds, written_at, before ? around_ : std::nullopt};
   return true;
 }
 
