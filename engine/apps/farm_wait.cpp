@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "apps/interrupt.h"
@@ -36,14 +37,13 @@ Error waited_no_longer(const farm::Job& job) {
 
 Result<void> wait_for_job(const farm::Job& job, Console& console) {
   const auto start = Clock::now();
-  auto answered = start;
-  bool first = true;                            // that Slurm is there is seen at once
+  std::optional<Clock::time_point> answered;    // that Slurm is there is seen at once
   Clock::time_point other_than_ending = start;  // when a chunk was last seen to wait or run
   for (milliseconds length = kFirstPause;; length = std::min(length * 3 / 2, kLongestPause)) {
     const auto asked = farm::status_of(job);
     if (asked) {
       answered = Clock::now();
-    } else if (milliseconds_since(answered) > kWithoutAnswer || first) {
+    } else if (!answered || milliseconds_since(*answered) > kWithoutAnswer) {
       console.end_progress();
       return asked.error();
     } else {
@@ -52,7 +52,6 @@ Result<void> wait_for_job(const farm::Job& job, Console& console) {
       console.end_progress();
       return waited_no_longer(job);
     }
-    first = false;
     const farm::JobStatus& status = *asked;
     console.progress(status.frames_done, status.frames, farm::waiting_line(job, status),
                      milliseconds_since(start) / 1000);

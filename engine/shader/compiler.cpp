@@ -137,10 +137,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   }
   // Behind what makes straight code of loops: most indices are constants then.
   AFTERGLOW_TRY(kernel.spirv, with_held_indices(kernel.spirv));
-  if (auto module = parse(kernel.spirv)) {
-    hold_divisors(*module);
-    kernel.spirv = module->join();
-  }
+  kernel.spirv = with_held_divisors(std::move(kernel.spirv));
   if (desc.config.defeat_uniform_inlining) kernel.spirv = defeat_uniform_inlining(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;

@@ -59,31 +59,6 @@ Instruction store(std::uint32_t variable, std::uint32_t value) {
   return out;
 }
 
-/// Puts instructions before the first function: all types and constants are known there.
-void declare(Module& module, const std::vector<Instruction>& declarations) {
-  const auto first = std::ranges::find(module.code, spv::OpFunction, &Instruction::op);
-  module.code.insert(first, declarations.begin(), declarations.end());
-}
-
-/// Zeros of each type, declared once.
-class Zeros {
- public:
-  explicit Zeros(Module& module) : module_(module) {}
-  std::uint32_t of(std::uint32_t type) {
-    auto& zero = zeros_[type];
-    if (zero == 0) {
-      zero = module_.fresh();
-      declarations.push_back(Instruction::of_ids(spv::OpConstantNull, type, zero, {}));
-    }
-    return zero;
-  }
-  std::vector<Instruction> declarations;
-
- private:
-  Module& module_;
-  std::map<std::uint32_t, std::uint32_t> zeros_;
-};
-
 /// Variables that something is stored in, whole, before anything else is done with them, in the first block of their
 /// function.
 std::set<std::uint32_t> stored_at_once(const Module& module) {

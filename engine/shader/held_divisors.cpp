@@ -15,14 +15,14 @@ bool divides(spv::Op op) {
 
 class Divisors {
  public:
-  explicit Divisors(Module& module) : module_(module) {
+  explicit Divisors(Module& module) : module_(module), zeros_(module) {
     for (const auto& i : module_.code) {
       if (i.op == spv::OpTypeBool) bools_[1] = i.words[1];
       if (i.op == spv::OpTypeVector) vectors_[i.words[1]] = {i.words[2], i.words[3]};
       if (i.op == spv::OpConstant && i.words.size() == 4 && i.words[3] != 0) never_zero_.insert(i.result);
-      const bool all = std::all_of(i.words.begin() + std::min<std::ptrdiff_t>(3, std::ssize(i.words)), i.words.end(),
-                                   [&](std::uint32_t id) { return never_zero_.contains(id); });
-      if (i.op == spv::OpConstantComposite && all) never_zero_.insert(i.result);
+      if (i.op == spv::OpConstantComposite &&
+          std::all_of(i.words.begin() + 3, i.words.end(), [&](auto id) { return never_zero_.contains(id); }))
+        never_zero_.insert(i.result);
     }
     for (const auto& [id, vector] : vectors_)
       if (vector.first == bools_[1]) bools_[vector.second] = id;
@@ -35,15 +35,15 @@ class Divisors {
       if (divides(i.op) && !never_zero_.contains(i.words[kDivisor])) {
         const std::uint32_t divisor = i.words[kDivisor];
         const std::uint32_t is_zero = module_.fresh(), held = module_.fresh();
-        code.push_back(Instruction::of_ids(spv::OpIEqual, bool_of(i.type), is_zero, {divisor, zero_of(i.type)}));
+        code.push_back(Instruction::of_ids(spv::OpIEqual, bool_of(i.type), is_zero, {divisor, zeros_.of(i.type)}));
         code.push_back(Instruction::of_ids(spv::OpSelect, i.type, held, {is_zero, one_of(i.type), divisor}));
         i.words[kDivisor] = held;
       }
       code.push_back(std::move(i));
     }
     module_.code = std::move(code);
-    const auto first = std::ranges::find(module_.code, spv::OpFunction, &Instruction::op);
-    module_.code.insert(first, declared_.begin(), declared_.end());
+    declare(module_, zeros_.declarations);
+    declare(module_, declared_);
   }
 
  private:
@@ -58,14 +58,6 @@ class Divisors {
     else
       declared_.push_back(Instruction::of_words(spv::OpTypeVector, {found, bool_of(vector->second.first), count}));
     return found;
-  }
-  std::uint32_t zero_of(std::uint32_t type) {
-    std::uint32_t& zero = zeros_[type];
-    if (zero == 0) {
-      zero = module_.fresh();
-      declared_.push_back(Instruction::of_ids(spv::OpConstantNull, type, zero, {}));
-    }
-    return zero;
   }
   std::uint32_t one_of(std::uint32_t type) {
     if (const auto known = ones_.find(type); known != ones_.end()) return known->second;
@@ -89,13 +81,23 @@ class Divisors {
   Module& module_;
   std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> vectors_;  ///< id → type of its parts, their number
   std::map<std::uint32_t, std::uint32_t> bools_;                              ///< number of parts → type
-  std::map<std::uint32_t, std::uint32_t> zeros_, ones_;                       ///< type → constant
-  std::set<std::uint32_t> never_zero_;                                        ///< constants
+  std::map<std::uint32_t, std::uint32_t> ones_;                               ///< type → constant
+  Zeros zeros_;
+  std::set<std::uint32_t> never_zero_;  ///< constants
   std::vector<Instruction> declared_;
 };
 
 }  // namespace
 
-void hold_divisors(Module& module) { Divisors(module).hold(); }
+Words with_held_divisors(Words spirv) {
+  constexpr std::size_t kHeader = 5;
+  bool any = false;
+  for (std::size_t at = kHeader; at < spirv.size() && !any; at += std::max(spirv[at] >> spv::WordCountShift, 1u))
+    any = divides(static_cast<spv::Op>(spirv[at] & spv::OpCodeMask));
+  auto module = any ? parse(spirv) : std::nullopt;
+  if (!module) return spirv;
+  Divisors(*module).hold();
+  return module->join();
+}
 
 }  // namespace afterglow

@@ -7,6 +7,6 @@
 namespace afterglow {
 
 /// Divisors of whole numbers that may be 0 are 1 then, as WGSL has it: x / 0 is x, and x % 0 is 0.
-void hold_divisors(Module& module);
+Words with_held_divisors(Words spirv);
 
 }  // namespace afterglow

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shader/spirv_module.h"
 
+#include <algorithm>
 #include <memory>
 
 namespace afterglow {
@@ -73,6 +74,20 @@ Instruction renamed(Instruction instruction, const Renaming& names) {
   rename(instruction.type);
   rename(instruction.result);
   return instruction;
+}
+
+void declare(Module& module, const std::vector<Instruction>& declarations) {
+  const auto first = std::ranges::find(module.code, spv::OpFunction, &Instruction::op);
+  module.code.insert(first, declarations.begin(), declarations.end());
+}
+
+std::uint32_t Zeros::of(std::uint32_t type) {
+  auto& zero = zeros_[type];
+  if (zero == 0) {
+    zero = module_.fresh();
+    declarations.push_back(Instruction::of_ids(spv::OpConstantNull, type, zero, {}));
+  }
+  return zero;
 }
 
 }  // namespace afterglow

@@ -42,6 +42,21 @@ struct Module {
 /// Nothing when it is not SPIR-V.
 std::optional<Module> parse(const Words& spirv);
 
+/// Puts instructions before the first function: all types and constants are known there.
+void declare(Module& module, const std::vector<Instruction>& declarations);
+
+/// Zeros of each type, declared once.
+class Zeros {
+ public:
+  explicit Zeros(Module& module) : module_(module) {}
+  std::uint32_t of(std::uint32_t type);
+  std::vector<Instruction> declarations;  ///< for `declare`
+
+ private:
+  Module& module_;
+  std::map<std::uint32_t, std::uint32_t> zeros_;
+};
+
 /// Id → the id that stands for it.
 using Renaming = std::map<std::uint32_t, std::uint32_t>;
 Instruction renamed(Instruction instruction, const Renaming& names);

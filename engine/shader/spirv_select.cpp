@@ -151,8 +151,7 @@ void declare_bool_vectors(Module& module) {
   for (std::uint32_t n = 2; n <= 4; ++n)
     if (!types.bool_vectors.contains(n))
       missing.push_back(Instruction::of_words(spv::OpTypeVector, {module.fresh(), types.boolean, n}));
-  const auto first = std::ranges::find(module.code, spv::OpFunction, &Instruction::op);
-  module.code.insert(first, missing.begin(), missing.end());
+  declare(module, missing);
 }
 
 std::size_t select_instead_of_branching(Module& module, std::size_t begin, std::size_t end) {
