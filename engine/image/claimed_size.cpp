@@ -2,7 +2,6 @@
 #include "image/claimed_size.h"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include "image/container_bytes.h"
@@ -27,19 +26,6 @@ Size webp_size(std::span<const unsigned char> head) {
   return size_of(little_endian(data + 6, 2) & 0x3fff, little_endian(data + 8, 2) & 0x3fff);
 }
 
-/// ISO/IEC 23008-12: spatial extents of all items, wherever they are in the tree of boxes.
-std::optional<Size> heif_size(std::string_view head) {
-  std::optional<Size> largest;
-  for (auto at = head.find("ispe"); at != head.npos && at + 16 <= head.size(); at = head.find("ispe", at + 4)) {
-    const auto number = [&](std::size_t offset) {
-      return big_endian(reinterpret_cast<const unsigned char*>(&head[at + offset]), 4);
-    };
-    const Size size = size_of(number(8), number(12));
-    if (!largest || size.area() > largest->area()) largest = size;
-  }
-  return largest;
-}
-
 }  // namespace
 
 std::optional<ClaimedSize> claimed_size(std::span<const unsigned char> head) {
@@ -49,9 +35,6 @@ std::optional<ClaimedSize> claimed_size(std::span<const unsigned char> head) {
     return ClaimedSize{size_of(little_endian(&head[6], 2), little_endian(&head[8], 2)), 4};
   if (text.starts_with("RIFF") && head.size() >= 30 && text.substr(8, 4) == "WEBP")
     return ClaimedSize{webp_size(head), 8};
-  constexpr std::array<std::string_view, 4> kStills{"ftypavif", "ftypheic", "ftypheix", "ftypmif1"};
-  if (text.size() >= 12 && std::ranges::find(kStills, text.substr(4, 8)) != kStills.end())
-    if (const auto size = heif_size(text)) return ClaimedSize{*size, 8};
   return {};
 }
 

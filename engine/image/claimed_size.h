@@ -16,8 +16,8 @@ struct ClaimedSize {
   std::uint64_t bytes_per_pixel = 0;  ///< that the reader keeps of the whole picture
 };
 
-/// From the first bytes of a GIF (logical screen), WebP (canvas or frame), HEIF or AVIF file (the largest `ispe`
-/// property); 4 KiB are enough. Nothing for other formats and headers that end too early, which readers refuse.
+/// From the first bytes of a GIF (logical screen) or WebP (canvas or frame); 30 are enough. Nothing for other formats
+/// and headers that end too early, which readers refuse.
 std::optional<ClaimedSize> claimed_size(std::span<const unsigned char> head);
 
 }  // namespace afterglow

@@ -24,6 +24,7 @@
 #include "image/container_bytes.h"
 #include "image/exr_header.h"
 #include "image/film_check.h"
+#include "image/heif_size.h"
 #include "image/jpeg2000_check.h"
 #include "image/jpeg_check.h"
 #include "image/numbered_check.h"
@@ -157,6 +158,7 @@ Result<ContainerFacts> check_container(const fs::path& file) {
     if (facts.deep_pnm)
       claimed = ClaimedSize{facts.deep_pnm->size, sizeof(float) * static_cast<unsigned>(facts.deep_pnm->channels)};
   }
+  if (format == "heif") claimed = heif_size(in, size);
   if (format == "hdr") {
     AFTERGLOW_TRY(facts.exposure, radiance_exposure(file, head));
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/container_bytes.h"
+#include "image/iso_boxes.h"
 #include "image/metadata_check.h"
 
 namespace afterglow {
@@ -14,32 +15,13 @@ namespace {
 
 constexpr std::uint64_t kMostProfile = 16u << 20;
 
-struct Box {
-  std::string type;
-  std::uint64_t begin = 0, end = 0;  ///< of what it holds
-};
-
-std::optional<Box> box_at(std::ifstream& in, std::uint64_t at, std::uint64_t end) {
-  const auto head = bytes_at(in, at, 16);
-  if (head.size() < 8) return {};
-  std::uint64_t length = big_endian(head.data(), 4), begin = at + 8;
-  if (length == 1) {
-    if (head.size() < 16) return {};
-    length = ordered(&head[8], 8, true);
-    begin = at + 16;
-  }
-  const bool rest = length == 0 || length > end - at;
-  if (!rest && length < begin - at) return {};
-  return Box{std::string(reinterpret_cast<const char*>(&head[4]), 4), std::min(begin, end), rest ? end : at + length};
-}
-
 /// Where the codestream begins. Looks at colour profiles on its way.
 Result<std::optional<std::uint64_t>> codestream(const std::filesystem::path& file, std::ifstream& in,
                                                 std::uint64_t size) {
   std::uint64_t at = 0, end = size;
-  std::vector<Box> outer;
+  std::vector<IsoBox> outer;
   while (true) {
-    const auto box = at < end ? box_at(in, at, end) : std::nullopt;
+    const auto box = iso_box_at(in, at, end);
     if (!box) {
       if (outer.empty()) return std::optional<std::uint64_t>();
       at = outer.back().end, end = size;

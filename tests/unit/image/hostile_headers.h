@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -18,6 +19,13 @@ namespace afterglow {
 inline std::string little(std::uint64_t value, int bytes) {
   std::string out;
   for (int i = 0; i < bytes; ++i, value >>= 8) out += static_cast<char>(value);
+  return out;
+}
+
+/// The same, the highest byte first.
+inline std::string big(std::uint64_t value, int bytes) {
+  std::string out = little(value, bytes);
+  std::reverse(out.begin(), out.end());
   return out;
 }
 

@@ -161,11 +161,6 @@ TEST_F(HostileHeaders, SgiRowsThatTheFileDoesNotHold) {
 
 /// An SGI picture whose packed rows are all this one, which is stored once.
 std::string packed_sgi(int unit, int width, int height, const std::string& row, int dimensions = 3, int planes = 3) {
-  const auto big = [](int value, int bytes) {
-    std::string out;
-    for (int i = bytes - 1; i >= 0; --i) out += static_cast<char>(value >> 8 * i & 255);
-    return out;
-  };
   std::string out =
       "\x01\xda\x01" + big(unit, 1) + big(dimensions, 2) + big(width, 2) + big(height, 2) + big(planes, 2);
   out.resize(512);
@@ -225,21 +220,31 @@ TEST_F(HostileHeaders, SgiRowsThatLieInEachOtherAreNotReadAgainAndAgain) {
 TEST_F(HostileHeaders, PicturesThatReadersDecodeWholeWhenTheyOpenThem) {
   // Sizes that are allowed, of more memory than is: the readers of these formats take it before they tell the size.
   const std::string vp8 = little(0x2a019d, 3) + little(16000, 2) + little(16000, 2);
-  const std::string heif = std::string(
-                               "\0\0\0\x14"
-                               "ftypavif\0\0\0\0avif",
-                               20) +
-                           std::string(
-                               "\0\0\0\x14"
-                               "ispe\0\0\0\0\0\0\x3e\x80\0\0\x3e\x80",
-                               20);
+  const auto box = [](const std::string& type, const std::string& content) {
+    return big(content.size() + 8, 4) + type + content;
+  };
+  const std::string avif = box("ftyp", "avif" + big(0, 4) + "avif"), side = big(16000, 4);
+  const auto properties = [&](const std::string& width) {
+    return box("iprp", box("ipco", box("ispe", big(0, 4) + width + width)));
+  };
+  const auto meta = [&](const std::string& boxes) { return avif + box("meta", big(0, 4) + boxes); };
+  // An item that is put together from others on a canvas, told in `idat`, from its second byte on, in two extents.
+  const auto made = [&](const std::string& type, const std::string& told) {
+    const std::string place = big(0x4400, 2) + big(1, 2) + big(7, 2) + big(1, 2) + big(0, 2) + big(2, 2);
+    return meta(box("idat", "x" + told) + properties(big(64, 4)) +
+                box("iinf", big(0, 4) + big(1, 2) + box("infe", big(2 << 24, 4) + big(7, 2) + big(0, 2) + type)) +
+                box("iloc", big(1 << 24, 4) + place + big(1, 4) + big(3, 4) + big(4, 4) + big(told.size() - 3, 4)));
+  };
   const std::map<std::string, std::string> files{
       {"gif", "GIF89a" + little(16000, 2) + little(16000, 2) + std::string(40, '\0')},
       {"webp, lossy", "RIFF" + little(60, 4) + "WEBPVP8 " + little(48, 4) + little(0x000250, 3) + vp8},
       {"webp, lossless", "RIFF" + little(60, 4) + "WEBPVP8L" + little(48, 4) + "\x2f" + little(15999 | 15999 << 14, 4)},
       {"webp, extended",
        "RIFF" + little(60, 4) + "WEBPVP8X" + little(10, 4) + little(0, 4) + little(15999, 3) + little(15999, 3)},
-      {"avif", heif},
+      {"avif", meta(properties(side))},
+      {"avif, behind 4 KiB", meta(box("free", std::string(5000, 'x')) + properties(side))},
+      {"avif, grid", made("grid", big(0, 4) + big(16000, 2) + big(16000, 2))},
+      {"avif, overlay", made("iovl", big(1, 2) + big(0, 8) + side + side)},
   };
   ReadOptions options;
   for (const auto& [name, bytes] : files) {
@@ -253,6 +258,9 @@ TEST_F(HostileHeaders, PicturesThatReadersDecodeWholeWhenTheyOpenThem) {
               "its picture is 16000×16000, larger than 15999 a side");
     options.max_side = 16384;
   }
+  options.max_bytes = 256u << 20;
+  EXPECT_THAT(refused(made("grid", big(0, 4) + big(0x3e00, 2) + big(0x3e, 1)), options).message,
+              HasSubstr("to decode, more than the 256 MiB allowed"));  // zeros follow what ends early
 }
 
 TEST_F(HostileHeaders, OnlyKnownFormatsReachALibrary) {
