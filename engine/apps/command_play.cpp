@@ -64,7 +64,9 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
   const auto start = Clock::now();
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
   AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
-  AFTERGLOW_TRY(const auto player, Player::open(*device, options, console.diagnostics()));
+  PlayerOptions watched = options;
+  watched.finite_watch = {.device = asked, .until_asked = true};
+  AFTERGLOW_TRY(const auto player, Player::open(*device, watched, console.diagnostics()));
   player->transport().set_speed(a.speed, player->now());
   HeadlessOptions headless;
   headless.fast = a.fast;
@@ -79,6 +81,7 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
   const auto began = Clock::now();
   auto done = play_headless(*player, headless);
   report.wall = milliseconds_since(began);
+  if (done) player->finish_finite_watch();
   if (done) done = a.check_shown(*player);  // it would show the result in its place
   // Validation goes first: it says what a failure comes from.
   if (device->validation_errors() > 0)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/options.h"
+#include "batch/non_finite_json.h"
 #include "batch/run_report.h"
 #include "core/json_text.h"
 #include "core/table.h"
@@ -127,6 +128,11 @@ std::string play_report_json(const PlayReport& report, Player& player) {
                       {"evicted", stats.cache.evicted}};
   out["reloads"] = Json::array();
   for (const ReloadLatency& latency : stats.latencies) out["reloads"].push_back(json_of(latency));
+  if (const auto& found = player.shown().not_finite) {
+    Json one{{"frame", found->frame}, {"picture", found->name}};
+    one.update(non_finite_json({.input = {}, .passes = found->passes, .overflows = {}, .untraced = found->untraced}));
+    out["non_finite"] = std::move(one);
+  }
   const LiveStatus status = player.live().status();
   if (status.error) out["preset_error"] = status.error->text();
   if (report.error) out["error"] = report.error->text();

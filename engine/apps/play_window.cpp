@@ -39,6 +39,7 @@ Result<void> play_in_window(
   AFTERGLOW_TRY(const auto device, Device::create(device_options, console.diagnostics()));
   player_options.footage.whole_sequences = true;
   player_options.wake = &DesktopWindow::wake;
+  player_options.finite_watch = {.device = export_device};
   Result<void> done;
   {
     AFTERGLOW_TRY(const auto player, Player::open(*device, player_options, console.diagnostics()));

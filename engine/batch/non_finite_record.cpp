@@ -6,28 +6,10 @@
 #include "core/text.h"
 
 namespace afterglow {
-namespace {
-
-/// "pass 'glow.divide' made 12 NaN, first at pixel 5,3: (nan, 0, 0, 1)", with the file that is to blame.
-std::string finding_text(const PassFinding& finding) {
-  const bool history = finding.pass.starts_with("history ");
-  std::string out = history ? fmt::format("{} holds {}", finding.pass, finding.found.text())
-                            : fmt::format("pass '{}' made {}", finding.pass, finding.found.text());
-  out += fmt::format(", first at {} of {}x{}", finding.found.first->text(), finding.size.width, finding.size.height);
-  if (!finding.shader.empty()) out += fmt::format(" (shader {})", finding.shader);
-  return out;
-}
-
-}  // namespace
-
 void take_findings(FrameNonFinite& frame, const Trace& trace, const Picture& picture) {
   frame.passes = trace.passes;
   frame.overflows = trace.overflows;
-  for (auto& finding : frame.passes) {
-    if (finding.size != picture.color.size()) continue;
-    finding.found.first->x += picture.data_window.x - picture.display_window.x;
-    finding.found.first->y += picture.data_window.y - picture.display_window.y;
-  }
+  set_places(frame.passes, picture);
 }
 
 Error non_finite_error(const PassFinding& finding, const std::filesystem::path& input) {

@@ -22,10 +22,6 @@ struct FrameNonFinite {
   bool untraced = false;                   ///< something was not finite, but nothing is when every pass runs by itself
 };
 
-/// What stands in a message where no pass is to blame.
-inline constexpr const char* kUntraced =
-    "values that are not finite came up in fused passes, but in no pass by itself in full floats; try --reference";
-
 /// The passes of a trace, with their places in the picture.
 void take_findings(FrameNonFinite& frame, const Trace& trace, const Picture& picture);
 /// Of --nan-policy fail. Names pass, shader, counts and pixel.

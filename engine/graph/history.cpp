@@ -49,14 +49,17 @@ std::vector<bool> passes_for(const Graph& graph, std::vector<ImageId> wanted) {
   return needed;
 }
 
+}  // namespace
+
 std::string unused_name(const Graph& graph, const std::string& wanted) {
+  const auto is_used = [&](const std::string& name) {
+    return std::ranges::find(graph.passes, name, &Pass::name) != graph.passes.end() ||
+           std::ranges::find(graph.images, name, &GraphImage::name) != graph.images.end();
+  };
   std::string name = wanted;
-  for (int n = 2; std::ranges::find(graph.passes, name, &Pass::name) != graph.passes.end(); ++n)
-    name = fmt::format("{}#{}", wanted, n);
+  for (int n = 2; is_used(name); ++n) name = fmt::format("{}#{}", wanted, n);
   return name;
 }
-
-}  // namespace
 
 const History* history_of_previous(const Graph& graph, ImageId image) {
   const auto found = std::ranges::find(graph.histories, image, &History::previous);

@@ -33,6 +33,8 @@ void drop_unread_histories(Graph& graph);
 /// source although histories have to be made, a pass that copies it is added; also where it is another picture of the
 /// frame or what the frame before made, and where a compute pass makes it, since callers' images are drawn to.
 void separate_result(Graph& graph);
+/// `wanted`, or "WANTED#2" and so on where a pass or an image has that name.
+std::string unused_name(const Graph& graph, const std::string& wanted);
 /// Makes the result a copy of what it was, by a pass of its own: everything else then runs as it does behind the last
 /// effect of a stack.
 void copy_result(Graph& graph, const std::string& effect);

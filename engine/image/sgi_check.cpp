@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "image/sgi_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <compare>
@@ -50,11 +52,12 @@ Result<void> check_sgi(const std::filesystem::path& file, std::ifstream& in, std
   const std::uint64_t height = big_endian(&head[8], 2), planes = big_endian(&head[10], 2);
   if (head[2] > 1 || unit < 1 || unit > 2 || dimensions < 1 || dimensions > 3)
     return malformed(file, "is a malformed SGI picture");
-  if (!packed) return {};
-
   const std::uint64_t rows = (dimensions > 1 ? height : 1) * (dimensions > 2 ? planes : 1), listed = height * planes;
   if (width == 0 || rows == 0) return malformed(file, "has no pixels");
-  if (rows > listed || planes > kMostChannels) return malformed(file, "is a malformed SGI picture");
+  if (planes > kMostChannels)  // the reader takes seconds to name thousands
+    return malformed(file, fmt::format("has {} channels, more than the {} that are read", planes, kMostChannels));
+  if (!packed) return {};
+  if (rows > listed) return malformed(file, "is a malformed SGI picture");
   if (kTables + listed * 8 > size) return malformed(file, "is truncated");
   std::vector<unsigned char> places(rows * 4), lengths(rows * 4);
   if (!read(kTables, places) || !read(kTables + listed * 4, lengths)) return malformed(file, "is truncated");

@@ -290,6 +290,8 @@ Result<Step> Player::step() {
   if (!s.transport.playing()) s.figures.stop();
   if (s.sound) s.sound_follower.follow(s.transport, *s.footage, *s.sound, now);
   AFTERGLOW_TRY(step.changed, s.show_due(now));
+  s.watch_finite();
+  s.take_finite();
   step.next = s.transport.next_due();
   AFTERGLOW_TRY(step.timed, s.time_a_kernel(step.changed, step));
   s.turn_ended = s.now();
@@ -332,6 +334,9 @@ Result<std::unique_ptr<Player>> Player::open(Device& device, const PlayerOptions
       state->diagnostics.warn(why);
       state->wake();
     });
+  if (options.finite_watch)
+    s.finite_watch =
+        std::make_unique<FiniteWatch>(*options.finite_watch, options.live.stack, [state = &s] { state->wake(); });
   if (!options.show.empty()) s.first->live().show(options.show);
   s.follow_needs();
   s.begin_reading();

@@ -13,6 +13,7 @@
 
 #include "exec/frame.h"
 #include "play/figures.h"
+#include "play/finite_watch.h"
 #include "play/footage.h"
 #include "play/read_ahead.h"
 #include "play/scopes.h"
@@ -34,11 +35,12 @@ struct PlayerOptions {
   LoopMode loop = LoopMode::loop;
   Pacing pacing = Pacing::real_time;
   KernelTiming timing = KernelTiming::none;
-  std::optional<SoundOptions> sound;  ///< of videos; none: all is silent
-  bool warm_up = true;                ///< LiveOptions::warm_up of both
-  std::string show;                   ///< image between passes to show; empty: the result
-  std::function<double()> clock;      ///< seconds, never backwards; empty: the system's steady clock
-  std::function<void()> wake;         ///< called on any thread when `step` has something to do before `Step::next`
+  std::optional<SoundOptions> sound;               ///< of videos; none: all is silent
+  bool warm_up = true;                             ///< LiveOptions::warm_up of both
+  std::optional<FiniteWatchOptions> finite_watch;  ///< of the first preset; none: nobody looks
+  std::string show;                                ///< image between passes to show; empty: the result
+  std::function<double()> clock;                   ///< seconds, never backwards; empty: the system's steady clock
+  std::function<void()> wake;  ///< called on any thread when `step` has something to do before `Step::next`
 };
 
 /// What a turn came to.
@@ -58,6 +60,9 @@ struct ShownFrame {
   Size size;  ///< of the whole picture; where a proxy is shown, of a proxy's pixels as many times as they are smaller
   std::optional<Error> unreadable;  ///< why it could not be read: the picture before stays
   std::optional<Error> failed;      ///< why the stack could not be run on it: the picture before stays
+  /// Passes of the first preset that made values that are not finite, in the frame that was looked at last: the first
+  /// after each build, and each that stands still. On screen they are 0.
+  std::shared_ptr<const FiniteAnswer> not_finite;
 };
 
 /// What is known of a frame. Later ones are worse.
@@ -137,6 +142,9 @@ class Player {
   /// See SettingEdits::rebase.
   void rebase(const std::vector<BaseChange>& changes);
   void rebase(const std::vector<BaseChange>& changes, const TextChange& text);
+
+  /// Blocks until the frame that was shown last is looked at: ShownFrame::not_finite.
+  void finish_finite_watch();
 
   /// See LiveStack::show.
   void show(const std::string& image);

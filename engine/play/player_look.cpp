@@ -331,6 +331,9 @@ Result<void> Player::open_preset(const std::filesystem::path& preset) {
   s.first = std::move(opened);
   s.options.preset = preset;
   s.measured = 0;
+  s.asked_finite.reset();
+  s.told_finite.clear();
+  s.shown.not_finite.reset();
   s.edits = {};
   s.dirty = true;
   s.follow_needs();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "session/display_encoding.h"
 
+#include "graph/history.h"
 #include "image/encode.h"
 
 namespace afterglow {
@@ -8,7 +9,7 @@ namespace afterglow {
 void encode_for_display(Graph& graph, const DisplayEncoding& encoding) {
   const auto output = static_cast<ImageId>(graph.images.size());
   Pass pass;
-  pass.name = "output.display";
+  pass.name = unused_name(graph, "output.display");
   pass.effect = "output";
   pass.shader = encoding.straight_alpha ? "output/display_straight" : "output/display";
   if (encoding.dither) pass.shader += "_dithered";
@@ -19,7 +20,7 @@ void encode_for_display(Graph& graph, const DisplayEncoding& encoding) {
   if (encoding.dither) {
     const auto noise = blue_noise_image();
     pass.inputs.push_back({"noise", static_cast<ImageId>(graph.images.size())});
-    graph.images.push_back({"output.noise", noise->size, -1, noise});
+    graph.images.push_back({unused_name(graph, "output.noise"), noise->size, -1, noise});
   }
   graph.passes.push_back(std::move(pass));
   graph.result = output;

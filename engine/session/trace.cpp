@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "session/trace.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/half.h"
@@ -56,6 +58,23 @@ std::optional<PassOverflow> overflow_in(const Image& image, const Rect& part) {
 }
 
 }  // namespace
+
+std::string finding_text(const PassFinding& finding) {
+  const bool history = finding.pass.starts_with("history ");
+  std::string out = history ? fmt::format("{} holds {}", finding.pass, finding.found.text())
+                            : fmt::format("pass '{}' made {}", finding.pass, finding.found.text());
+  out += fmt::format(", first at {} of {}x{}", finding.found.first->text(), finding.size.width, finding.size.height);
+  if (!finding.shader.empty()) out += fmt::format(" (shader {})", finding.shader);
+  return out;
+}
+
+void set_places(std::vector<PassFinding>& findings, const Picture& picture) {
+  for (PassFinding& finding : findings) {
+    if (finding.size != picture.color.size()) continue;
+    finding.found.first->x += picture.data_window.x - picture.display_window.x;
+    finding.found.first->y += picture.data_window.y - picture.display_window.y;
+  }
+}
 
 GuardedGraph guard(const Graph& graph, NanPolicy policy) {
   GuardedGraph out;

@@ -28,6 +28,11 @@ struct PassFinding {
   NonFinite found;     ///< places are pixels of that image
 };
 
+/// "pass 'glow.divide' made 12 NaN, first at pixel 5,3: (nan, 0, 0, 1)", with the file that is to blame.
+std::string finding_text(const PassFinding& finding);
+/// Places become pixels of the picture, from the upper left corner of its display window, where an image covers it.
+void set_places(std::vector<PassFinding>& findings, const Picture& picture);
+
 /// Finite values that half floats cannot hold, of one pass.
 struct PassOverflow {
   std::string pass, effect;
@@ -40,6 +45,10 @@ struct Trace {
   std::vector<PassOverflow> overflows;  ///< passes with values beyond ±65504, in their order
   Image result;                         ///< RGB mended; A that of the source
 };
+
+/// What stands in a message where no pass is to blame.
+inline constexpr const char* kUntraced =
+    "values that are not finite came up in fused passes, but in no pass by itself in full floats; try --reference";
 
 /// The graph with a pass behind each that makes what is not finite 0, or a mean of neighbours. `made[i]`: the image
 /// that pass i of `graph` makes in the new one, before it is mended.

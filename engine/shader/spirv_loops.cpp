@@ -6,6 +6,8 @@
 #include <functional>
 #include <map>
 
+#include "shader/spirv_passes.h"
+
 namespace afterglow {
 namespace {
 
@@ -15,11 +17,18 @@ bool ends_block(spv::Op op) {
 }
 
 /// What an instruction of a bound may be: it gives the same whenever what it reads is the same.
-bool is_pure(spv::Op op) {
-  constexpr std::array kPure{
-      spv::OpLoad,    spv::OpAccessChain,      spv::OpIAdd,    spv::OpISub,    spv::OpIMul,
-      spv::OpSNegate, spv::OpCompositeExtract, spv::OpBitcast, spv::OpExtInst, spv::OpCompositeConstruct};
-  return std::ranges::find(kPure, op) != kPure.end();
+bool is_pure(const Instruction& i) {
+  constexpr std::array kPure{spv::OpLoad,
+                             spv::OpAccessChain,
+                             spv::OpIAdd,
+                             spv::OpISub,
+                             spv::OpIMul,
+                             spv::OpSNegate,
+                             spv::OpCompositeExtract,
+                             spv::OpBitcast,
+                             spv::OpCompositeConstruct};
+  if (i.op == spv::OpExtInst) return is_pure_function(i);
+  return std::ranges::find(kPure, i.op) != kPure.end();
 }
 
 struct Block {
@@ -276,7 +285,7 @@ class Finder {
         continue;
       }
       const Instruction& i = code_[found->second];
-      if (!is_pure(i.op) || (i.op == spv::OpLoad && i.words.size() != 4)) return false;
+      if (!is_pure(i) || (i.op == spv::OpLoad && i.words.size() != 4)) return false;
       if (i.op == spv::OpLoad && !stays(root(i.words[3]), written, calls)) return false;
       needed.insert(found->second);
       for (std::size_t word = 3; word < i.words.size(); ++word)

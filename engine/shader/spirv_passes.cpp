@@ -102,6 +102,12 @@ void forbid_inlining(Module& module, std::uint32_t function) {
       instruction.words[3] = spv::FunctionControlDontInlineMask;
 }
 
+bool is_pure_function(const Instruction& function) {
+  constexpr std::uint32_t kModf = 35, kFrexp = 51, kFirstInterpolation = 76, kLastInterpolation = 78;
+  const std::uint32_t number = function.words[4];
+  return number != kModf && number != kFrexp && (number < kFirstInterpolation || number > kLastInterpolation);
+}
+
 bool inlines_quickly(const Module& module) {
   std::map<std::uint32_t, Calls> functions;
   Calls* function = nullptr;

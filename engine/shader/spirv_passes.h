@@ -29,6 +29,10 @@ void forbid_inlining(Module& module, std::uint32_t function);
 /// effects that come along have 664 at most.)
 inline constexpr std::uint64_t kMaxInlinedCalls = 1024;
 
+/// Of OpExtInst: a function of GLSL.std.450 that makes a value and does nothing else. Modf and Frexp write to a
+/// variable.
+bool is_pure_function(const Instruction& function);
+
 /// False: the inlining passes would take too long for this module.
 bool inlines_quickly(const Module& module);
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "shader/spirv_module.h"
+#include "shader/spirv_passes.h"
 
 namespace afterglow {
 namespace {
@@ -13,7 +14,7 @@ bool is_harmless(spv::Op op) {
   const bool arithmetic = (op >= spv::OpVectorExtractDynamic && op <= spv::OpTranspose) ||
                           (op >= spv::OpConvertFToU && op <= spv::OpFUnordGreaterThanEqual) ||
                           (op >= spv::OpShiftRightLogical && op <= spv::OpBitCount);
-  return arithmetic || op == spv::OpExtInst || op == spv::OpLine || op == spv::OpNoLine || op == spv::OpLoad;
+  return arithmetic || op == spv::OpLine || op == spv::OpNoLine || op == spv::OpLoad;
 }
 
 /// A side of a branch: the block that starts at `label`, or nothing of its own when that is the merge block.
@@ -73,6 +74,7 @@ class Selector {
 
   /// An index that is no constant could lead outside an array where the branch keeps it from being used.
   bool is_harmless(const Instruction& instruction) const {
+    if (instruction.op == spv::OpExtInst) return is_pure_function(instruction);
     if (instruction.op != spv::OpAccessChain) return afterglow::is_harmless(instruction.op);
     return std::all_of(instruction.words.begin() + 4, instruction.words.end(),
                        [this](std::uint32_t index) { return constants_.contains(index); });

@@ -146,9 +146,14 @@ class Folder {
       for (const auto to : targets_of(i))
         if (never_entered(label) || !may_go(i, to)) closed_.insert({label, to});
     }
-    // Where values meet, they may be used before they are made.
-    for (std::size_t at = begin_; at < end_; ++at)
-      if (module_.code[at].op == spv::OpPhi) module_.code[at] = renamed(std::move(module_.code[at]), names_);
+    // Where values meet, they may be used before they are made. What turned out to be a constant is used no more.
+    const auto first_of = module_.code.begin() + static_cast<std::ptrdiff_t>(begin_);
+    const auto end_of = module_.code.begin() + static_cast<std::ptrdiff_t>(end_);
+    const auto is_known = [&](const Instruction& i) { return i.op == spv::OpPhi && names_.contains(i.result); };
+    const auto end_left = std::remove_if(first_of, end_of, is_known);
+    for (auto at = first_of; at != end_left; ++at)
+      if (at->op == spv::OpPhi) *at = renamed(std::move(*at), names_);
+    module_.code.erase(end_left, end_of);
     const auto first = std::ranges::find(module_.code, spv::OpFunction, &Instruction::op);
     module_.code.insert(first, declared_.begin(), declared_.end());
   }

@@ -46,6 +46,20 @@ Message message_of(std::string headline, const Error& error, const std::string& 
   return out;
 }
 
+/// The first pass that is to blame; the others behind it.
+Error error_of(const FiniteAnswer& answer) {
+  if (answer.passes.empty()) return {ErrorKind::script, kUntraced};
+  const PassFinding& first = answer.passes.front();
+  Error out{ErrorKind::script, fmt::format("{}, in {}", finding_text(first), answer.name), first.file, first.line};
+  for (std::size_t i = 1; i < answer.passes.size(); ++i) {
+    const PassFinding& finding = answer.passes[i];
+    out.trail.push_back(finding.file.empty()
+                            ? finding_text(finding)
+                            : fmt::format("{}:{}: {}", finding.file, finding.line, finding_text(finding)));
+  }
+  return out;
+}
+
 std::optional<Message> current(const Player& constant) {
   Player& player = const_cast<Player&>(constant);
   const LiveStatus status = player.live().status();
@@ -67,6 +81,10 @@ std::optional<Message> current(const Player& constant) {
                         *of_other.error, of_other.source_line, of_other.error_text());
   }
   if (shown.failed) return message_of("The stack cannot be run", *shown.failed, "", shown.failed->text());
+  if (shown.not_finite) {
+    const Error error = error_of(*shown.not_finite);
+    return message_of("A pass makes values that are not finite; they are shown as 0", error, "", error.text());
+  }
   return std::nullopt;
 }
 

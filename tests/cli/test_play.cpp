@@ -49,6 +49,27 @@ TEST_F(Play, EveryFrameOnceWithFigures) {
       << "from the second frame on: the first starts the clock";
 }
 
+TEST_F(Play, APassThatMakesNanIsNamed) {
+  write("effects/root.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"root\", doc = \"Roots.\", at = "
+        "\"post_process\", build = function(g, s, source)\n  return g:pass { shader = \"root\", source = source }\n"
+        "end }\n");
+  write("shaders/root.glsl", "vec4 apply(vec4 color) { return vec4(sqrt(color.rgb - 1e6), color.a); }\n");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.root {} }\n");
+  const Outcome outcome = play({"in/shot.####.exr", "--headless", "--fast", "--report", "play.json"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("effects/root.lua:3: pass 'root.root' made "));
+  EXPECT_THAT(outcome.err, HasSubstr("shown as 0, in shot.0004.exr"));
+  const auto found = report().at("non_finite");
+  EXPECT_EQ(found.at("frame"), 4);
+  EXPECT_EQ(found.at("picture"), "shot.0004.exr");
+  EXPECT_EQ(found.at("passes").at(0).at("pass"), "root.root");
+  EXPECT_EQ(found.at("passes").at(0).at("line"), 3);
+  make_preset("look.lua");
+  ASSERT_EQ(play({"in/shot.####.exr", "--headless", "--fast", "--report", "play.json"}).exit_code, kDone);
+  EXPECT_FALSE(report().contains("non_finite"));
+}
+
 /// What Ctrl+R takes: a video, and a folder that is not there yet.
 TEST_F(Play, ExportsGoToVideosAndNewFolders) {
   for (const char* to : {"out.mp4", "graded/", "out.####.png"})

@@ -105,7 +105,7 @@ class RandomShader {
   std::string statement(int depth, bool in_loop) {
     if (++statements_ > kMostStatements) return "c += 1.0;\n";
     const std::string i = "i" + std::to_string(++names_);
-    switch (depth > 0 ? take(15) : take(3)) {
+    switch (depth > 0 ? take(18) : take(3)) {
       case 0:
         return "c = " + vector(2) + ";\n";
       case 1:
@@ -147,6 +147,17 @@ class RandomShader {
                ");\nfor (int a = 0; a < 4; ++a)\nfor (int b = a + 1; b < 5; ++b) {\n" + skip("b") + i + "[b] = 0.5 * " +
                i + "[b] - " + i + "[a];\n" + block(depth - 1, true) + "}\nc.xy += " + i + "[" +
                (take(2) == 0 ? digit() + " % 5" : "k % 5") + "];\n";
+      case 14: {  // a condition whose left side is known in each turn
+        const bool all = take(2) == 0;
+        return "for (int " + i + " = 0; " + i + " < 4; ++" + i + ")\n  if (" + i +
+               (all ? " > 0 && c[" : " == 0 || c[") + i + "] > c[" + i + " - 1]) {\n" + block(depth - 1, false) + "}\n";
+      }
+      case 15:  // functions that write to a variable
+        return "float " + i + " = g;\nif (" + condition(1) + ") c." + component() + " += modf(" + number(1) + ", " + i +
+               ");\nc." + component() + " += " + i + ";\n";
+      case 16:
+        return "int " + i + " = k;\nif (" + condition(1) + ") c." + component() + " += frexp(" + number(1) + ", " + i +
+               ");\nk = " + i + " & 7;\n";
       default:
         return "for (int " + i + " = 0;; ++" + i + ") {\n  if (" + i + " >= " + bound() + ") break;\n" +
                block(depth - 1, true) + "}\n";

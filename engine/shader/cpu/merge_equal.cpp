@@ -33,12 +33,6 @@ bool is_pure(spv::Op op) {
   }
 }
 
-/// Functions of GLSL.std.450 that do more than make a value: Modf, Frexp, InterpolateAt…
-bool is_pure_function(std::uint32_t function) {
-  constexpr std::uint32_t kModf = 35, kFrexp = 51, kFirstInterpolation = 76, kLastInterpolation = 78;
-  return function != kModf && function != kFrexp && (function < kFirstInterpolation || function > kLastInterpolation);
-}
-
 class Merger {
  public:
   explicit Merger(Module& module) : module_(module) {}
@@ -88,7 +82,7 @@ class Merger {
 
   bool can_merge(const Instruction& i) const {
     if (i.result == 0) return false;
-    if (i.op == spv::OpExtInst) return is_pure_function(i.words[4]);
+    if (i.op == spv::OpExtInst) return is_pure_function(i);
     if (i.op != spv::OpLoad) return is_pure(i.op);
     const auto type = types_.find(i.words[3]);
     const auto pointer = type == types_.end() ? classes_.end() : classes_.find(type->second);

@@ -199,7 +199,7 @@ TEST_F(HostileHeaders, SgiRowsThatGiveOtherPixelsThanThePictureHas) {
   EXPECT_EQ(refused(packed_sgi(1, 5, 0, std::string(600, 'x'), 1, 3)).message, "is a malformed SGI picture");
   EXPECT_EQ(refused(packed_sgi(3, 5, 4, bytes)).message, "is a malformed SGI picture");
   EXPECT_EQ(refused(packed_sgi(1, 5, 4, bytes, 4)).message, "is a malformed SGI picture");
-  EXPECT_EQ(refused(packed_sgi(1, 5, 4, bytes, 3, 33)).message, "is a malformed SGI picture");
+  EXPECT_EQ(refused(packed_sgi(1, 5, 4, bytes, 3, 33)).message, "has 33 channels, more than the 32 that are read");
   EXPECT_EQ(refused(packed_sgi(1, 0, 4, bytes)).message, "has no pixels");
 }
 
@@ -261,6 +261,15 @@ TEST_F(HostileHeaders, PicturesThatReadersDecodeWholeWhenTheyOpenThem) {
   options.max_bytes = 256u << 20;
   EXPECT_THAT(refused(made("grid", big(0, 4) + big(0x3e00, 2) + big(0x3e, 1)), options).message,
               HasSubstr("to decode, more than the 256 MiB allowed"));  // zeros follow what ends early
+}
+
+TEST_F(HostileHeaders, SgiOfThousandsOfChannels) {
+  const auto sgi = [](int packed, int channels) {
+    return "\x01\xda" + big(packed, 1) + big(1, 1) + big(3, 2) + big(9, 2) + big(7, 2) + big(channels, 2) +
+           std::string(1000, '\0');
+  };
+  for (const int packed : {0, 1})
+    EXPECT_EQ(refused(sgi(packed, 65535)).message, "has 65535 channels, more than the 32 that are read");
 }
 
 TEST_F(HostileHeaders, OnlyKnownFormatsReachALibrary) {

@@ -59,6 +59,15 @@ vec4 apply(vec4 color) {
   for (int j = 0; j < 2; ++j) { for (int i = 0; i < 3; ++i) { if (i == 1) continue; color.g += 0.3 * color[i]; } color = color.gbra; }
   return color;
 })",
+    // Functions that write to a variable, where not every pixel comes.
+    R"(vec4 apply(vec4 color, ivec2 pixel) {
+  float whole = -1.0, part = 0.0;
+  int power = -3;
+  if (pixel.y % 3 == 0) part = modf(color.r * 7.0, whole);
+  if (color.g > 1.0) part += frexp(color.b, power);
+  for (int i = 0; i < 3; ++i) if (color[i] > 2.0) part += modf(color[i], whole) * float(i);
+  return vec4(whole, part, float(power), color.a);
+})",
 };
 
 // Calls stay where a function has several returns; this one loops.

@@ -113,6 +113,20 @@ TEST(UnrollArrays, TurnsMayEndEarly) {
             0);
 }
 
+/// By the number of a turn one side of `&&` and `||` is known.
+TEST(UnrollArrays, ConditionsOfWhichATurnKnowsASide) {
+  const std::string fill = "  vec4 v = fetch(source, p);\n  float w[5] = float[](v.x, v.y, v.z, v.w, 1.0);\n";
+  for (const char* peak : {"i > 0 && w[i] > w[i - 1]", "i == 0 || w[i] > w[i - 1]", "w[i] > 1.0 && i > 2",
+                           "i > 0 && (i == 4 || w[i] > w[i - 1])", "(i > 0 && i < 4) && w[i] > w[i + 1]"})
+    EXPECT_EQ(loops_left(fill + "  vec3 sum = vec3(0.0);\n  for (int i = 0; i < 5; ++i) if (" + peak +
+                         ") sum += w[i];\n  return vec4(sum, 1.0);\n"),
+              0)
+        << peak;
+  EXPECT_EQ(loops_left(fill + "  const bool debug = false;\n  float sum = 0.0;\n  if (debug && w[1] > 0.3) sum = 1.0;\n"
+                              "  for (int i = 0; i < 3; ++i) sum += w[i];\n  return vec4(sum);\n"),
+            0);
+}
+
 TEST(UnrollArrays, PreciseAndValuesThatAreMissingHoldInEachTurn) {
   EXPECT_EQ(loops_left(std::string(kNine) +
                        "  precise vec3 sum = vec3(0.0);\n  for (int i = 0; i < 9; ++i) {\n    float w;\n    int k;\n"
