@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/printable.h"
@@ -129,8 +130,10 @@ std::string markup_text(std::string_view text) {
 std::string number_text(double value) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
   // A setting that came as 0.2 must print as 0.2 whether it was kept as a float or as a double.
-  const std::string as_float = fmt::format("{}", static_cast<float>(value));
   const std::string as_double = fmt::format("{}", value);
+  const double size = std::abs(value);
+  if (size > std::numeric_limits<float>::max() || size < std::numeric_limits<float>::min()) return as_double;
+  const std::string as_float = fmt::format("{}", static_cast<float>(value));
   return as_double.size() <= as_float.size() ? as_double : as_float;
 }
 

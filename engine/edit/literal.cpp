@@ -25,7 +25,8 @@ bool has(std::string_view text, char a) { return text.find(a) != std::string_vie
 // Zeros behind the point, where the old number was written with more than it needed: 1.0, 0.50.
 std::string padded(std::string number, std::string_view old) {
   const std::size_t point = old.find('.');
-  if (point == std::string_view::npos || old.back() != '0' || has(number, 'e')) return number;
+  if (point == std::string_view::npos || old.back() != '0' || has(number, 'e') || has(old, 'e') || has(old, 'E'))
+    return number;
   const std::size_t wanted = old.size() - point - 1;
   if (!has(number, '.')) number += '.';
   const std::size_t digits = number.size() - number.find('.') - 1;

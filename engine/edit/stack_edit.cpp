@@ -71,12 +71,15 @@ class StackRewriter {
   Result<StackRewrite> add() {
     // What the effect is by itself: it may not exist, or not do without settings.
     const std::string call = fmt::format("{}.{} {{}}", library_name(lua_), edit_.name);
-    AFTERGLOW_TRY(
-        const Preset alone,
-        load_text(file_,
-                  fmt::format("local fx = require \"afterglow\"\nreturn fx.stack {{ fx[\"{}\"] {{}} }}\n", edit_.name),
-                  options_));
-    const StackShape wanted = shape_of(alone);
+    const auto alone = load_text(
+        file_, fmt::format("local fx = require \"afterglow\"\nreturn fx.stack {{ fx[\"{}\"] {{}} }}\n", edit_.name),
+        options_);
+    if (!alone) {
+      Error error = alone.error();
+      if (error.file == file_.string()) error.file.clear(), error.line = 0;  // lines of that text, not of the file
+      return error;
+    }
+    const StackShape wanted = shape_of(*alone);
     for (const std::size_t open : tables()) {
       auto trial = tried(replaced(text_, insert_last(open, call)));
       const auto at = trial ? added(*trial, wanted) : std::nullopt;

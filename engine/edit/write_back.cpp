@@ -34,10 +34,14 @@ struct Task {
   SettingValue wanted;  ///< the default, when it goes back to that
 };
 
+/// How the place of each edit is found. `first`: the first that can be written to, all are checked together; `tried`:
+/// each place by loading the preset with that edit alone.
+enum class Places { first, tried };
+
 class Rewriter {
  public:
-  Rewriter(std::string file, const std::string& text, const PresetOptions& options, const Preset& preset)
-      : file_(std::move(file)), options_(options), preset_(preset), lua_(text) {
+  Rewriter(std::string file, const std::string& text, const PresetOptions& options, const Preset& preset, Places places)
+      : file_(std::move(file)), options_(options), preset_(preset), places_(places), lua_(text) {
     out_.before = out_.text = text;
   }
 
@@ -97,9 +101,12 @@ class Rewriter {
     const auto places = places_of(lua_, preset_, file_, task.edit);
     if (!places) return places.error();
     std::optional<Error> reason;
+    if (places_ == Places::first) reason = Error{ErrorKind::script, "no place can be written to"};
     bool expression = false;
     for (const Place& place : *places) {
       task.place = place;
+      if (places_ == Places::first && takes(task)) return {};
+      if (places_ == Places::first) continue;
       auto failure = try_place(task, places->size() == 1);
       if (!failure) return {};
       // An expression says most; else the first place, which fits best.
@@ -108,6 +115,11 @@ class Rewriter {
       expression = expression || is_expression;
     }
     return reason;
+  }
+
+  bool takes(const Task& task) const {
+    const auto change = change_of(lua_, task);
+    return change && !(task.said.moving && change->before.empty());
   }
 
   // `alone`: no other place is left to choose.
@@ -227,6 +239,7 @@ class Rewriter {
   std::string file_;
   const PresetOptions& options_;
   const Preset& preset_;
+  Places places_;
   LuaText lua_;
   Rewrite out_;
   std::vector<Task> tasks_;
@@ -280,7 +293,11 @@ Result<std::vector<PresetEdit>> parse_resets(const Preset& preset, const std::ve
 Result<Rewrite> rewrite_preset(const std::filesystem::path& file, const std::string& before,
                                const std::vector<PresetEdit>& edits, const PresetOptions& options) {
   AFTERGLOW_TRY(const Preset preset, load_text(file, before, options));
-  return Rewriter(file.string(), before, options, preset).run(edits);
+  if (edits.size() > 1) {  // in one load of the preset, where that does what all of them want
+    auto rewrite = Rewriter(file.string(), before, options, preset, Places::first).run(edits);
+    if (rewrite && rewrite->refused.empty()) return rewrite;
+  }
+  return Rewriter(file.string(), before, options, preset, Places::tried).run(edits);
 }
 
 }  // namespace afterglow

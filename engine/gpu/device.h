@@ -2,6 +2,7 @@
 // A Vulkan device: picked by name, or adopted from the caller. Owns nothing global.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -164,7 +165,7 @@ class Device {
   bool stores_few_channels_ = false;
   ForcedWays forced_;
   std::string cache_file_;
-  std::size_t cached_bytes_ = 0;
+  mutable std::atomic<std::size_t> cached_bytes_ = 0;  ///< of the pipeline cache, as its file has it
   std::shared_ptr<ValidationLog> log_;
   std::shared_ptr<const Presentation> presentation_;
 };

@@ -82,6 +82,7 @@ void Device::save_pipeline_cache() const {
   std::filesystem::create_directories(std::filesystem::path(cache_file_).parent_path(), ignored);
   // A cache that cannot be written costs time only.
   (void)write_file_atomically(cache_file_, pipeline_cache_file_content(data));
+  cached_bytes_ = data.size();
   trim_cache(std::filesystem::path(cache_file_).parent_path(), ".bin");  // of drivers that are gone
 }
 

@@ -51,7 +51,10 @@ void remove_passes(Graph& graph, const std::vector<bool>& passes, const std::vec
     condition.output = number[condition.output];
     condition.image = number[condition.image];
   }
-  std::erase_if(graph.idle, [](const IdleCondition& condition) { return condition.output == kNoImage; });
+  // Nobody asks for the condition of what is gone; and what reads nothing of its source is never idle.
+  std::erase_if(graph.idle, [](const IdleCondition& condition) {
+    return condition.output == kNoImage || condition.image == kNoImage;
+  });
   for (auto& history : graph.histories) {
     history.previous = number[history.previous];
     history.next = number[history.next];

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/text.h"
 
@@ -30,13 +32,17 @@ std::vector<std::array<double, 4>> read_taps(lua_State* lua, const TableReader& 
       lua_rawgeti(lua, -1, static_cast<lua_Integer>(i));
       const Value tap = read_value(lua, -1);
       lua_pop(lua, 1);
-      bool fine = tap.kind == Value::Kind::list && tap.count == parts;
-      for (int k = 0; fine && k < parts; ++k) {
-        const double v = tap.list[static_cast<std::size_t>(k)];
-        fine = std::isfinite(static_cast<float>(v)) && (k == parts - 1 || std::abs(v) <= kMaxOffset);
-      }
-      if (!fine) {
+      const bool fits = tap.kind == Value::Kind::list && tap.count == parts;
+      const auto numbers = std::span(tap.list).first(fits ? static_cast<std::size_t>(parts) : 0);
+      const auto finite = [](double v) { return std::isfinite(static_cast<float>(v)); };
+      const auto far = [](double v) { return std::abs(v) > kMaxOffset; };
+      if (!fits || !std::ranges::all_of(numbers, finite)) {
         wrong(fmt::format("{}: tap {} of {} is {}", filter.what(), i, name, tap.shown()));
+        break;
+      }
+      if (std::ranges::any_of(numbers.first(numbers.size() - 1), far)) {
+        call.fail(failure(fmt::format("{}: tap {} of {} is {}, too far away", filter.what(), i, name, tap.shown()),
+                          {"filter", name}, fmt::format("offsets of -{0} to {0} texels", kMaxOffset)));
         break;
       }
       taps.push_back(tap.list);

@@ -36,6 +36,19 @@ TEST_F(Run, WritesThePictureAndSaysNothing) {
   EXPECT_EQ(spec.height, 36);
 }
 
+TEST_F(Run, APassMayHaveTheNameOfTheLastOne) {
+  write("effects/output.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"output\", doc = \"Halves.\", at = "
+        "\"post_process\", build = function(g, s, source)\n  return g:pass { shader = \"half\", source = source, name "
+        "= \"display\" }\nend }\n");
+  write("shaders/half.glsl", "vec4 apply(vec4 color) { return color * 0.5; }\n");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.output {} }\n");
+  for (const char* to : {"o.png", "o.jpg", "o.exr"}) {
+    const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", to, "--dither", "blue"});
+    EXPECT_EQ(outcome.exit_code, kDone) << to << outcome.err;
+  }
+}
+
 TEST_F(Run, TypeAndCompressionAreTakenOver) {
   ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "f.exr", "--type", "float", "--compression", "piz"}).exit_code,
             kDone);

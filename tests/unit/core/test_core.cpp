@@ -96,6 +96,9 @@ TEST(Text, NumbersReadBackShort) {
   EXPECT_EQ(number_text(0.2), "0.2");
   EXPECT_EQ(number_text(1e10), "10000000000");
   EXPECT_EQ(number_text(-15), "-15");
+  EXPECT_EQ(number_text(0), "0");
+  EXPECT_EQ(number_text(1e-50), "1e-50") << "0 as a float";
+  EXPECT_EQ(number_text(-1e300), "-1e+300") << "no float";
 }
 
 TEST(Text, WhatIsNoUtf8IsReplaced) {

@@ -44,6 +44,13 @@ class StackEditing : public ::testing::Test {
   Scene scene;
 };
 
+TEST_F(StackEditing, AnEffectThatCannotBeAddedNamesNoLineOfTheFile) {
+  const auto out = rewrite(head + "}\n", {Kind::add, "nothing_like_it"});
+  ASSERT_FALSE(out);
+  EXPECT_EQ(out.error().line, 0);
+  EXPECT_THAT(out.error().message, HasSubstr("nothing_like_it"));
+}
+
 TEST_F(StackEditing, AddsWhereItRuns) {
   EXPECT_EQ(inside("\n  fx.glow { amount = 1 }, -- mine\n  fx.curve_of {},\n", {Kind::add, "grade"}),
             "\n  fx.glow { amount = 1 }, -- mine\n  fx.grade {},\n  fx.curve_of {},\n");

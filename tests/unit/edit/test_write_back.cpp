@@ -84,6 +84,7 @@ TEST_F(WriteBack, NumbersKeepTheirStyle) {
   EXPECT_EQ(to("1e3", 2500), "2.5e3");
   EXPECT_EQ(to("5E-4", 0.00025), "2.5E-4");
   EXPECT_EQ(to("1e3", 0.5), "0.5");
+  EXPECT_EQ(to("1.50e-10", 0.25), "0.25");
   EXPECT_EQ(to("0xFF", 171), "0xAB");
   EXPECT_EQ(to("0x10", 0.5), "0.5");
   EXPECT_EQ(to("0x1p-1", 0.3), "0.3");
@@ -230,8 +231,22 @@ TEST_F(WriteBack, EntriesThatAreMadeTogetherStay) {
               HasSubstr("preset.lua:4: error: glow#2.knee cannot be changed alone: 3 entries are made on this line"));
   EXPECT_THAT(refusal(head + "fx.glow { }, fx.glow { knee = 1 and 0.1 }" + tail, {{"glow#2", "knee", number(0.5)}}),
               HasSubstr("preset.lua:3: error: glow#2.knee is computed and stays as it is: 1 and 0.1"));
-  // All of them together may be.
   EXPECT_THAT(refusal(loop, {{"glow", "knee", number(1)}}), HasSubstr("cannot be changed alone"));
+  EXPECT_THAT(
+      refusal(loop, {{"glow", "knee", number(1)}, {"glow#2", "knee", number(1)}, {"glow#3", "knee", number(2)}}),
+      HasSubstr("cannot be changed alone"));
+}
+
+TEST_F(WriteBack, EntriesThatAreMadeTogetherChangeTogether) {
+  const std::string loop =
+      "local fx = require \"afterglow\"\nlocal all = {}\nfor i = 1, 3 do\n  all[i] = fx.glow { knee = 0.1 "
+      "}\nend\nreturn fx.stack(all)\n";
+  const auto out =
+      rewrite(loop, {{"glow", "knee", number(1)}, {"glow#2", "knee", number(1)}, {"glow#3", "knee", number(1)}});
+  ASSERT_TRUE(out) << out.error().text();
+  EXPECT_TRUE(out->refused.empty());
+  EXPECT_THAT(out->text, HasSubstr("all[i] = fx.glow { knee = 1.0 }"));
+  EXPECT_EQ(out->written.size(), 3u);
 }
 
 TEST_F(WriteBack, ValuesThatAreThereAlreadyAreNoChange) {

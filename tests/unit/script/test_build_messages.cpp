@@ -165,7 +165,8 @@ TEST_F(BuildMessages, Filters) {
   EXPECT_EQ(filter("{ taps = { { 0, 1 } } }"), at + ": tap 1 of taps is {0, 1}; allowed: {{dx, dy, weight}, …}");
   EXPECT_EQ(filter("{ taps = { { 0, 0, 1 } }, x = { { 0, 1 } } }"),
             at + " has taps and x or y; only one way at a time");
-  EXPECT_EQ(filter("{ x = { { 1e6, 1 } } }"), at + ": tap 1 of x is {1000000, 1}; allowed: {{offset, weight}, …}");
+  EXPECT_EQ(filter("{ x = { { 1e6, 1 } } }"),
+            at + ": tap 1 of x is {1000000, 1}, too far away; allowed: offsets of -16384 to 16384 texels");
   EXPECT_EQ(error("return g:filter { filter = {} }"),
             "effects/probe.lua:4: error: pass 'glow.filter' of effect 'probe': needs 'source', an image");
   EXPECT_EQ(error("return g:filter { source = 5, filter = {} }"),

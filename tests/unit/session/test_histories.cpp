@@ -273,6 +273,19 @@ TEST_F(HistoriesOfFrames, AnIdleEffectStillHandsOnItsImages) {
   EXPECT_EQ(run(*session, 3, 1), 1003.25f);
 }
 
+/// It does not keep its promise: its source is gone with the history that nothing reads.
+TEST_F(HistoriesOfFrames, AnIdleEffectMayLeaveItsSourceUnread) {
+  write("effects/blank.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"blank\", at = \"post_process\", order = 300,\n"
+        "  settings = {}, idle = function(s, source) return { brightest = 1 } end,\n"
+        "  build = function(g, s, source) return g:pass { shader = \"t/blank\", size = source } end }\n");
+  write("shaders/t/blank.glsl", "vec4 sample_at(ivec2 p) { return vec4(3.0, 2.0, 1.0, 1.0); }\n");
+  look("fx.trail {}, fx.blank {}");
+  const auto session = open();
+  EXPECT_EQ(run(*session, 1, 1), 3);
+  EXPECT_EQ(run(*session, 2, 0), 3);
+}
+
 TEST_F(HistoriesOfFrames, AnImageThatIsKeptCanBeShown) {
   look("fx.trail {}, fx.other { factor = 4 }");
   const auto session = open();
