@@ -85,12 +85,12 @@ std::uint64_t total(const SanitizeCounts& counts) {
   return counts.nan + counts.negative + counts.too_large + counts.alpha;
 }
 
-void read_color(const Pixels& p, int y, float* row, Mended& mended) {
+void read_color(const Pixels& p, bool keep_negative, int y, float* row, Mended& mended) {
   if (p.samples == AFTERGLOW_UINT8) return decode_codes(p, y, row);
   read_floats(p, y, row);
   if (p.channels == 3) add_alpha(row, p.size.width);
   SanitizeCounts counts;
-  sanitize_color(row, static_cast<std::size_t>(p.size.width), counts);
+  sanitize_color(row, static_cast<std::size_t>(p.size.width), counts, keep_negative);
   if (const auto sum = total(counts)) mended += sum;
 }
 
@@ -229,14 +229,19 @@ Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const c
   return out;
 }
 
-HostImage input_image(const Pixels& pixels, ImageRole role, Mended& mended) {
+HostImage color_image(const Pixels& pixels, bool keep_negative, Mended& mended) {
   HostImage out;
   out.size = pixels.size;
-  out.channels = role == ImageRole::color ? 4 : pixels.channels;
-  if (role == ImageRole::color)
-    out.read_row = [pixels, &mended](int y, float* row) { read_color(pixels, y, row, mended); };
-  else
-    out.read_row = [pixels, role, &mended](int y, float* row) { read_auxiliary(pixels, role, y, row, mended); };
+  out.channels = 4;
+  out.read_row = [=, &mended](int y, float* row) { read_color(pixels, keep_negative, y, row, mended); };
+  return out;
+}
+
+HostImage auxiliary_image(const Pixels& pixels, ImageRole role, Mended& mended) {
+  HostImage out;
+  out.size = pixels.size;
+  out.channels = pixels.channels;
+  out.read_row = [=, &mended](int y, float* row) { read_auxiliary(pixels, role, y, row, mended); };
   return out;
 }
 

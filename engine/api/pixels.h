@@ -58,9 +58,11 @@ class MendedImages {
   std::array<Mended, 4> counts_{};
 };
 
-/// The picture as an input of a frame. Colour comes as RGBA, scene-linear, alpha associated, finite and ≥ 0. `mended`
-/// and what `pixels` points at must outlive it.
-HostImage input_image(const Pixels& pixels, ImageRole role, Mended& mended);
+/// The picture as an input of a frame: RGBA, scene-linear, alpha associated, finite and, without `keep_negative`, ≥ 0.
+/// `mended` and what `pixels` points at must outlive it.
+HostImage color_image(const Pixels& pixels, bool keep_negative, Mended& mended);
+/// The same of another image, which is no colour.
+HostImage auxiliary_image(const Pixels& pixels, ImageRole role, Mended& mended);
 
 /// Writes results into `to`, in `region` alone. `source`: where alpha comes from when the result's storage is too
 /// coarse for it.

@@ -157,15 +157,16 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   Shape shape;
   AFTERGLOW_TRY(shape.context, context_of(info.frame, source.size));
   AFTERGLOW_TRY(shape.region, region_of(info.region, source.size));
+  const bool keeps_negative = backend.preset().keeps_negative().value_or(false);
   std::map<std::string, HostImage> inputs{
-      {"source", input_image(source, ImageRole::color, stack.mended[ImageRole::color])}};
+      {"source", color_image(source, keeps_negative, stack.mended[ImageRole::color])}};
   for (const Input& input :
        {Input{"depth", &info.depth, ImageRole::depth}, Input{"normal", &info.normal, ImageRole::normal},
         Input{"motion", &info.motion, ImageRole::motion}}) {
     if (!input.image->data) continue;
     AFTERGLOW_TRY(const Pixels pixels, check_image(*input.image, input.role, input.name));
     AFTERGLOW_CHECK(same_size(pixels, input.name));
-    inputs[input.name] = input_image(pixels, input.role, stack.mended[input.role]);
+    inputs[input.name] = auxiliary_image(pixels, input.role, stack.mended[input.role]);
     shape.context.auxiliary[input.name] = pixels.size;
   }
   if (result.samples == AFTERGLOW_UINT8)

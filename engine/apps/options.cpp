@@ -107,8 +107,8 @@ void LayerArguments::add(CLI::App& command) {
   command
       .add_option(
           "--gamut", gamut,
-          "What becomes of components below 0, which colours outside of Rec.709 have: cut (default; they end at "
-          "0) or keep")
+          "What becomes of components below 0, which colours outside of Rec.709 have: cut (they end at 0) or keep "
+          "(default: as the look says, else cut)")
       ->check(CLI::IsMember({"cut", "keep"}))
       ->type_name("WORD")
       ->group(group);
@@ -136,7 +136,7 @@ void LayerArguments::add(CLI::App& command) {
 
 void LayerArguments::choose_reading(ReadOptions& options) const {
   options.layer = layer;
-  options.keep_negative = gamut == "keep";
+  if (!gamut.empty()) options.keep_negative = gamut == "keep";
   options.cut_overscan = overscan == "cut";
 }
 

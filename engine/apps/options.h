@@ -53,7 +53,7 @@ struct PresetArguments {
 /// --layer, --input-space, --gamut, --overscan, --depth, --normal, --motion, --mattes: where the parts of a picture
 /// come from, and how it is stored.
 struct LayerArguments {
-  std::string layer, input_space, gamut = "cut", overscan = "keep", depth, normal, motion, mattes;
+  std::string layer, input_space, gamut, overscan = "keep", depth, normal, motion, mattes;
   void add(CLI::App& command);
   /// What every picture of a command is read with.
   void choose_reading(ReadOptions& options) const;

@@ -183,7 +183,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--reference", flag(a.execution.reference)},
           {"--layer", a.layers.layer},
           {"--input-space", a.layers.input_space},
-          {"--gamut", other(a.layers.gamut, "cut")},
+          {"--gamut", a.layers.gamut},
           {"--overscan", other(a.layers.overscan, "keep")},
           {"--depth", a.layers.depth},
           {"--normal", a.layers.normal},

@@ -194,6 +194,7 @@ Result<void> run_frames(BatchRun& run) {
   FrameLoopOptions options = asked.loop;
   options.read.auxiliary = run.session->preset().needs();
   options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;
+  if (!options.read.keep_negative) options.read.keep_negative = run.session->preset().keeps_negative();
   AFTERGLOW_CHECK(prepare_lock(run));
   FrameLoop loop(*run.session, *run.sink, options, run.events);
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));

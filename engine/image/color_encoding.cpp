@@ -231,7 +231,9 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
 
 }  // namespace
 
-void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts) { sanitize_linear(rgba, pixels, counts); }
+void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts, bool keep_negative) {
+  (keep_negative ? keep_finite : sanitize_linear)(rgba, pixels, counts);
+}
 
 void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels, SanitizeCounts& counts) {
   decode_rows(encoding, CurveDecoder(encoding), rgba, pixels, counts);

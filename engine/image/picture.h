@@ -68,7 +68,7 @@ struct Picture {
 };
 
 /// Makes RGBA of scene-linear light finite and its colours ≥ 0, as `SanitizeCounts` says, and counts that.
-void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts);
+void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts, bool keep_negative = false);
 /// Values of depth, normals, motion and the like below kSmallestColor become 0, as those of colours do.
 void flush_smallest(float* values, std::size_t count);
 

@@ -67,8 +67,9 @@ struct ReadOptions {
   std::string layer;
   /// Name of the space that colours are stored in (image/input_space.h), whatever the file says; empty: what it says.
   std::string input_space;
-  bool cut_overscan = false;   ///< what lies outside of the display window is left out
-  bool keep_negative = false;  ///< components below 0, which colours outside of Rec.709 have, stay
+  bool cut_overscan = false;  ///< what lies outside of the display window is left out
+  /// Components below 0, which colours outside of Rec.709 have, stay. None: as the look says, else they end at 0.
+  std::optional<bool> keep_negative;
   bool raw = false;  ///< numbers as they are stored, whole ones as 0…1: no colours, none made positive, alpha apart
   /// A frame of a video: `file` of the functions below is only its name then.
   std::shared_ptr<Movie> movie;

@@ -252,6 +252,7 @@ Result<Picture> Footage::read_whole(int picture, const FootageNeeds& needs, Diag
   ReadOptions options = read_;
   options.auxiliary = needs.auxiliary;
   if (options.input_space.empty()) options.input_space = needs.input_space;
+  if (!options.keep_negative) options.keep_negative = needs.keep_negative;
   AFTERGLOW_TRY(options.depth, resolved(read_.depth, source.number));
   AFTERGLOW_TRY(options.normal, resolved(read_.normal, source.number));
   AFTERGLOW_TRY(options.motion, resolved(read_.motion, source.number));

@@ -33,6 +33,7 @@ struct FootageOptions {
 struct FootageNeeds {
   std::vector<std::string> auxiliary{};  ///< "depth", "normal", as stacks ask for them
   std::string input_space{};             ///< where ReadOptions says none; empty: what pictures say themselves
+  std::optional<bool> keep_negative{};   ///< where ReadOptions does not say
   bool operator==(const FootageNeeds&) const = default;
 };
 

@@ -110,12 +110,17 @@ void Player::State::follow_needs() {
     auxiliary.insert(needs.auxiliary.begin(), needs.auxiliary.end());
     needs.auxiliary.assign(auxiliary.begin(), auxiliary.end());
     if (own) needs.input_space = own->preset().input_space();
+    if (own) needs.keep_negative = own->preset().keeps_negative();
     others = needs != before;
   }
   if (own && other && options.footage.read.input_space.empty() &&
       own->preset().input_space() != other->preset().input_space())
     diagnostics.warn_once("input_space of --b",
                           "the two looks say different things of input_space; both see pictures as the first has them");
+  if (own && other && !options.footage.read.keep_negative &&
+      own->preset().keeps_negative().value_or(false) != other->preset().keeps_negative().value_or(false))
+    diagnostics.warn_once("gamut of --b",
+                          "the two looks say different things of gamut; both see pictures as the first has them");
   if (others && ahead) {
     ahead->forget();
     reread = true;

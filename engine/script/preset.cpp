@@ -47,6 +47,7 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   max_error = stack.max_error;
   reference_height = stack.reference_height;
   input_space = stack.input_space;
+  gamut = stack.gamut;
   for (auto& declared : stack.entries) {
     const auto& schema = runtime->effects[static_cast<std::size_t>(declared.effect)].schema;
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
@@ -144,6 +145,9 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
 
 const std::string& Preset::name() const { return state_->name; }
 const std::string& Preset::input_space() const { return state_->input_space; }
+std::optional<bool> Preset::keeps_negative() const {
+  return state_->gamut.empty() ? std::nullopt : std::optional(state_->gamut == "keep");
+}
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 const std::vector<PresetArgument>& Preset::arguments() const { return state_->runtime->arguments; }
 bool Preset::may_change() const { return state_->may_change; }

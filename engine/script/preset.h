@@ -154,6 +154,8 @@ class Preset {
 
   const std::string& name() const;          ///< of the stack
   const std::string& input_space() const;   ///< `input_space` of the stack; empty: none
+  /// `gamut` of the stack: whether components below 0 stay, which colours outside of Rec.709 have; none: not said.
+  std::optional<bool> keeps_negative() const;
   std::optional<double> max_error() const;  ///< `max_error` of the stack
   /// In the order of execution, as they are for no frame in particular; those of a frame are Build::entries.
   const std::vector<StackEntry>& entries() const;

@@ -100,6 +100,13 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
       table.fail(failure(fmt::format("{}: input_space: {}", table.what(), found.error().message), {"input_space"},
                          found.error().allowed, found.error().nearest));
   }
+  if (const auto gamut = table.text("gamut")) {
+    stack.gamut = *gamut;
+    const std::vector<std::string> words{"cut", "keep"};
+    if (std::ranges::find(words, *gamut) == words.end())
+      table.fail(failure(fmt::format("{}: gamut = \"{}\"", table.what(), tidy_message(*gamut, 40)), {"gamut"},
+                         join(words), nearest_name(*gamut, words)));
+  }
   if (const auto height = table.integer("reference_height")) stack.reference_height = height;
   if (stack.reference_height && (*stack.reference_height < 1 || *stack.reference_height > 16384))
     table.fail(failure(fmt::format("{}: reference_height = {} is out of range", table.what(), *stack.reference_height),
@@ -118,8 +125,8 @@ void push_stack(lua_State* lua, DeclaredStack stack) {
 }
 
 const std::vector<std::string>& stack_keys() {
-  static const std::vector<std::string> keys{"input_space", "max_error",        "name",
-                                             "position",    "reference_height", "requires"};
+  static const std::vector<std::string> keys{"gamut",    "input_space",      "max_error", "name",
+                                             "position", "reference_height", "requires"};
   return keys;
 }
 

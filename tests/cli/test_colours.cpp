@@ -141,6 +141,24 @@ TEST_F(Colours, OutsideRec709AreKeptWhereAsked) {
   }
 }
 
+TEST_F(Colours, ALookSaysThatTheyAreKept) {
+  const OIIO::ImageSpec spec(64, 64, 3, OIIO::TypeFloat);
+  ASSERT_NO_FATAL_FAILURE(make("a.exr", spec, {1, 0.0625f, 0.03125f}));
+  write("look.lua", "return require(\"afterglow\").stack { input_space = \"acescg\", gamut = \"keep\" }\n");
+  const auto green = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"run", "look.lua", "a.exr", "-o", "b.exr", "--output-space", "acescg"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return pixels_of("b.exr")[1];
+  };
+  EXPECT_NEAR(green({}), 0.0625, 1e-3);
+  EXPECT_GT(green({"--gamut", "cut"}), 0.1) << "the command line goes before it";
+  write("look.lua", "return require(\"afterglow\").stack { input_space = \"acescg\" }\n");
+  EXPECT_GT(green({}), 0.1);
+  EXPECT_NEAR(green({"--gamut", "keep"}), 0.0625, 1e-3);
+}
+
 TEST_F(Colours, NegativeLightIsTold) {
   for (const bool half : {true, false}) {
     const OIIO::ImageSpec spec(64, 64, 3, half ? OIIO::TypeHalf : OIIO::TypeFloat);

@@ -67,6 +67,17 @@ TEST_F(PictureTest, TheInputSpaceOfALookIsToldToBeOfFiles) {
   EXPECT_THAT(messages_, testing::ElementsAre(HasSubstr("input_space = \"logc3\" of the look is for files")));
 }
 
+TEST_F(PictureTest, ComponentsBelowZeroStayWhereTheLookSaysSo) {
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size());
+  source[4] = -0.25f;
+  look("gamut = \"keep\", fx.gain { amount = 2 }");
+  run(stack(), image(source, kWidth, kHeight), image(result, kWidth, kHeight));
+  EXPECT_EQ(result[4], -0.5f);
+  look("fx.gain { amount = 2 }");
+  run(stack(), image(source, kWidth, kHeight), image(result, kWidth, kHeight));
+  EXPECT_EQ(result[4], 0);
+}
+
 TEST_F(PictureTest, ThreeChannelsAreOpaque) {
   std::vector<float> opaque = pixels(kWidth, kHeight), three;
   for (std::size_t i = 0; i < opaque.size(); ++i) {

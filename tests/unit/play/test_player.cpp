@@ -123,6 +123,17 @@ TEST_F(PlayerTest, PicturesAreOfTheSpaceThatTheLookSays) {
   EXPECT_FLOAT_EQ(source(), 0.5f);
   EXPECT_THAT(warnings_, testing::IsEmpty());
 
+  write_picture_of(1, -0.5f);
+  write_space("look.lua", "gamut = \"keep\"");
+  player_->reload_pictures();
+  reload();
+  EXPECT_FLOAT_EQ(source(), -0.5f);
+  write_space("look.lua", "");
+  reload();
+  EXPECT_FLOAT_EQ(source(), 0);
+  warnings_.clear();  // of light below 0
+  write_picture_of(1, 0.5f);
+
   write_space("other.lua", "input_space = \"gamma24\"");
   PlayerOptions options;
   options.other_preset = path("other.lua");

@@ -125,7 +125,7 @@ TEST_F(Extend, Messages) {
             "SETTING = "
             "VALUE } })");
   EXPECT_EQ(error("\"base\", {\n glwo = {} }"),
-            "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, input_space, "
+            "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, gamut, input_space, "
             "max_error, name, "
             "position, reference_height, requires; "
             "did you mean 'glow'?");

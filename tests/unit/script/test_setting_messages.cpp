@@ -152,7 +152,7 @@ TEST_F(SettingMessages, LinesInModulesAndWithoutATableAreFound) {
 
 TEST_F(SettingMessages, Stacks) {
   EXPECT_EQ(error("nmae = \"x\""),
-            "preset.lua:3: error: fx.stack has no 'nmae'; allowed: input_space, max_error, name, position, "
+            "preset.lua:3: error: fx.stack has no 'nmae'; allowed: gamut, input_space, max_error, name, position, "
             "reference_height, requires; did you mean 'name'?");
   EXPECT_EQ(error("fx.glow {},\n5"),
             "preset.lua:4: error: fx.stack: position 2 is 5, not an effect or a volume; allowed: fx.NAME { … }, "
