@@ -332,7 +332,7 @@ class Assembler {
       return shader_error(
           source.path.string(), 0,
           fmt::format("'{}' is a {} shader and cannot stand here", source.name, info_of(source.interface.kind).name));
-    AFTERGLOW_TRY(const ShaderScan scanned, scan(source.text, source.path.string(), ScanAs::stage));
+    const ShaderScan& scanned = source.file->scan;
     const std::string prefix = fmt::format("ag_s{}_", stage_count_);
     AFTERGLOW_TRY(const auto values, constants(stage, prefix));
     StorageReaders readers;
@@ -358,7 +358,7 @@ class Assembler {
       block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
-    AFTERGLOW_CHECK(texts_.add(source, scanned, prefix, values, readers));
+    texts_.add(source, prefix, values, readers);
     const std::string function = prefix + info_of(kind).entry;
     if (source.interface.done)
       sample_rest(prefix + std::string(kDoneFunction), function, source.keeps_state);

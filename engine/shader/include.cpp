@@ -59,12 +59,13 @@ class Resolver {
   Result<std::size_t> add(const fs::path& path, const IncludeLine& line, int depth) {
     ShaderSource::Include include{line.name, path, {}, {}, {}};
     AFTERGLOW_CHECK(check_inside(search_, path));
-    AFTERGLOW_TRY(include.text, read_shader(path, search_.record.get()));
-    bytes_ += include.text.size();
+    AFTERGLOW_TRY(std::string text, read_shader(path, search_.record.get()));
+    bytes_ += text.size();
     if (bytes_ > kMaxIncludeBytes)
       return shader_error(path.string(), 0,
                           fmt::format("the includes have more than {} bytes together", kMaxIncludeBytes));
-    AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, path.string(), ScanAs::library));
+    AFTERGLOW_TRY(include.file, scan_file(std::move(text), path.string(), ScanAs::library));
+    const ShaderScan& scanned = include.file->scan;
     for (const auto& name : scanned.names) {
       include.global_names.push_back(name.name);
       if (name.macro) macros_[path].insert(name.name);

@@ -30,20 +30,19 @@ NewName new_name(const std::string& prefix, const GlobalName& name) {
 
 }  // namespace
 
-Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scanned, const std::string& prefix,
-                              const std::vector<std::string>& constants, const StorageReaders& readers) {
+void KernelTexts::add(const ShaderSource& source, const std::string& prefix, const std::vector<std::string>& constants,
+                      const StorageReaders& readers) {
+  const ShaderScan& scanned = source.file->scan;
   NameMap names = names_of_prelude();
   std::vector<std::size_t> seen;  // include of the source → library of the kernel
   for (const auto& include : source.includes) {
-    AFTERGLOW_TRY(const std::size_t index, library(include, seen));
-    seen.push_back(index);
-    see(libraries_[index], names);
+    seen.push_back(library(include, seen));
+    see(libraries_[seen.back()], names);
   }
   for (const auto& name : scanned.names) names.insert_or_assign(name.name, new_name(prefix, name));
   add_shared(scanned, prefix);
-  stages_text_ += line_of(source.path) +
-                  rewrite(source.text, scanned, names, constants, add_unset(scanned, source.path, prefix), readers);
-  return {};
+  stages_text_ += line_of(source.path) + rewrite(source.file->text, scanned, names, constants,
+                                                 add_unset(scanned, source.path, prefix), readers);
 }
 
 std::string KernelTexts::zeros_of_shared(std::int64_t invocations) const {
@@ -58,25 +57,24 @@ std::string KernelTexts::zeros_of_shared(std::int64_t invocations) const {
 }
 
 void KernelTexts::see(const Library& library, NameMap& names) {
-  for (const auto& name : library.names) names.insert_or_assign(name.name, new_name(library.prefix, name));
+  for (const auto& name : library.file->scan.names) names.insert_or_assign(name.name, new_name(library.prefix, name));
 }
 
 /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before it.
-Result<std::size_t> KernelTexts::library(const ShaderSource::Include& include,
-                                         const std::vector<std::size_t>& earlier) {
-  Library added{include.path, include.text, fmt::format("ag_l{}_", libraries_.size()), {}, {}};
+std::size_t KernelTexts::library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier) {
+  Library added{include.path, include.file, fmt::format("ag_l{}_", libraries_.size()), {}};
   for (const auto use : include.uses) added.uses.push_back(earlier.at(use));
   for (std::size_t i = 0; i < libraries_.size(); ++i)
-    if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses)
+    if (libraries_[i].path == added.path && libraries_[i].file->text == added.file->text &&
+        libraries_[i].uses == added.uses)
       return i;
-  AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, include.path.string(), ScanAs::library));
+  const ShaderScan& scanned = include.file->scan;
   NameMap names = names_of_prelude();
   for (const auto use : added.uses) see(libraries_[use], names);
-  added.names = scanned.names;
   see(added, names);
   add_shared(scanned, added.prefix);
-  libraries_text_ +=
-      line_of(include.path) + rewrite(include.text, scanned, names, {}, add_unset(scanned, include.path, added.prefix));
+  libraries_text_ += line_of(include.path) +
+                     rewrite(include.file->text, scanned, names, {}, add_unset(scanned, include.path, added.prefix));
   libraries_.push_back(std::move(added));
   return libraries_.size() - 1;
 }

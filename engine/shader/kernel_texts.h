@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,9 @@ namespace afterglow {
 class KernelTexts {
  public:
   /// Adds a stage behind the libraries that it includes, those that are not there yet. `prefix` is that of its names;
-  /// `constants` and `readers`: see rewrite. Errors (script): of a library's text.
-  Result<void> add(const ShaderSource& source, const ShaderScan& scanned, const std::string& prefix,
-                   const std::vector<std::string>& constants, const StorageReaders& readers);
+  /// `constants` and `readers`: see rewrite.
+  void add(const ShaderSource& source, const std::string& prefix, const std::vector<std::string>& constants,
+           const StorageReaders& readers);
 
   /// Libraries, then stages, with #line directives into `file_names`.
   std::string text() const { return libraries_text_ + stages_text_; }
@@ -30,13 +31,13 @@ class KernelTexts {
  private:
   struct Library {
     std::filesystem::path path;
-    std::string text, prefix;
+    std::shared_ptr<const ShaderFile> file;
+    std::string prefix;
     std::vector<std::size_t> uses;  ///< libraries of this kernel that it sees
-    std::vector<GlobalName> names;
   };
 
   static void see(const Library& library, NameMap& names);
-  Result<std::size_t> library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier);
+  std::size_t library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier);
   std::size_t file_index(const std::string& path);
   std::string line_of(const std::filesystem::path& file);
   void add_shared(const ShaderScan& scanned, const std::string& prefix);

@@ -24,17 +24,12 @@ std::vector<fs::path> ShaderSource::files() const {
 
 namespace {
 
-Result<void> check_expansion(const ShaderSource& source, const ShaderScan& scanned) {
-  std::vector<ShaderScan> libraries;
-  for (const auto& include : source.includes) {
-    AFTERGLOW_TRY(ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
-    libraries.push_back(std::move(library));
-  }
+Result<void> check_expansion(const ShaderSource& source) {
   std::vector<MacroFile> files;
-  MacroFile own{source.path.string(), &scanned, {}};
-  for (std::size_t i = 0; i < libraries.size(); ++i) {
-    files.push_back({source.includes[i].path.string(), &libraries[i], source.includes[i].uses});
-    own.uses.push_back(i);
+  MacroFile own{source.path.string(), &source.file->scan, {}};
+  for (const auto& include : source.includes) {
+    own.uses.push_back(files.size());
+    files.push_back({include.path.string(), &include.file->scan, include.uses});
   }
   files.push_back(std::move(own));
   return check_macros(files);
@@ -52,22 +47,22 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   auto source = std::make_shared<ShaderSource>();
   source->name = name;
   source->path = path;
-  source->text = std::move(text);
-  AFTERGLOW_TRY(ShaderScan scanned, scan(source->text, path.string(), ScanAs::stage));
+  AFTERGLOW_TRY(source->file, scan_file(std::move(text), path.string(), ScanAs::stage));
+  const ShaderScan& scanned = source->file->scan;
   AFTERGLOW_TRY(source->includes, resolve_includes(search, path, scanned));
-  AFTERGLOW_CHECK(check_expansion(*source, scanned));
-  for (auto& global : scanned.names) source->global_names.push_back(std::move(global.name));
-  source->interface = std::move(scanned.interface);
+  AFTERGLOW_CHECK(check_expansion(*source));
+  for (const auto& global : scanned.names) source->global_names.push_back(global.name);
+  source->interface = scanned.interface;
   Hasher hasher;
-  hasher.add(source->text);
-  for (const auto& include : source->includes) hasher.add(include.text);
+  hasher.add(source->file->text);
+  for (const auto& include : source->includes) hasher.add(include.file->text);
   source->hash = hasher.finish();
   note_loops(scanned.tokens, *source);
   source->keeps_state = scanned.keeps_state;
   source->fixed_alpha_line = fixed_alpha_line(scanned.tokens, info_of(source->interface.kind).entry);
   source->level_line = level_line(scanned.tokens);
   for (const auto& include : source->includes) {
-    AFTERGLOW_TRY(const ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
+    const ShaderScan& library = include.file->scan;
     note_loops(library.tokens, *source);
     source->keeps_state = source->keeps_state || library.keeps_state;
     if (!library.shared.empty() && source->interface.kind != PassKind::compute)

@@ -18,17 +18,19 @@
 
 namespace afterglow {
 
+struct ShaderFile;
+
 /// One file of GLSL with its includes resolved.
 struct ShaderSource {
   std::string name;  ///< as asked for, without ".glsl": "glow/threshold"
   std::filesystem::path path;
-  std::string text;  ///< as the author wrote it
+  std::shared_ptr<const ShaderFile> file;  ///< its text, as the author wrote it
   ShaderInterface interface;
   /// Libraries it includes, directly or through others, each once, in the order in which they must stand.
   struct Include {
     std::string name;  ///< as written in #include
     std::filesystem::path path;
-    std::string text;
+    std::shared_ptr<const ShaderFile> file;
     std::vector<std::size_t> uses;          ///< indices into `includes` of what it sees: its own includes and theirs
     std::vector<std::string> global_names;  ///< as below
   };

@@ -489,4 +489,11 @@ Result<ShaderScan> scan(std::string_view text, const std::string& file, ScanAs a
   return ShaderScanner(file, as).run(std::move(tokens));
 }
 
+Result<std::shared_ptr<const ShaderFile>> scan_file(std::string text, const std::string& file, ScanAs as) {
+  auto scanned = std::make_shared<ShaderFile>();
+  scanned->text = std::move(text);
+  AFTERGLOW_TRY(scanned->scan, scan(scanned->text, file, as));
+  return std::shared_ptr<const ShaderFile>(std::move(scanned));
+}
+
 }  // namespace afterglow

@@ -2,6 +2,7 @@
 // Finds what one file of GLSL declares at file scope, by its tokens. Internal to the room.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +47,14 @@ enum class ScanAs {
   library  ///< an included file: none of them, no uniforms, no specialised constants
 };
 
+/// A text with what it declares, so that no file is scanned twice: it never moves, and its tokens stay good.
+struct ShaderFile {
+  std::string text;
+  ShaderScan scan;
+};
+
 /// `text` must outlive the result. Errors (script) name `file` and the line.
 Result<ShaderScan> scan(std::string_view text, const std::string& file, ScanAs as);
+Result<std::shared_ptr<const ShaderFile>> scan_file(std::string text, const std::string& file, ScanAs as);
 
 }  // namespace afterglow

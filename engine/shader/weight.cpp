@@ -11,6 +11,7 @@
 
 #include "core/saturated.h"
 #include "shader/rename.h"
+#include "shader/scan.h"
 #include "shader/spirv_module.h"
 #include "shader/token.h"
 #include "shader/workgroup.h"
@@ -77,8 +78,8 @@ class Places {
     return count;
   }
   void add(const ShaderSource& source) {
-    texts_.emplace_back(source.path.string(), source.text);
-    for (const auto& include : source.includes) texts_.emplace_back(include.path.string(), include.text);
+    texts_.emplace_back(source.path.string(), source.file->text);
+    for (const auto& include : source.includes) texts_.emplace_back(include.path.string(), include.file->text);
   }
   std::vector<std::pair<std::string, std::string>> texts_;
 };
