@@ -93,7 +93,7 @@ class KernelCheck {
   const Look& look_;
   const ExecutionConfig config_ = execution_on_cpu();
   KernelCompiler compiler_{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  std::set<Hash> checked_;                               // most of these graphs differ in their last kernel alone
+  CheckedKernels checked_;                               // most of these graphs differ in their last kernel alone
 };
 
 }  // namespace

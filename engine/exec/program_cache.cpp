@@ -74,7 +74,7 @@ namespace {
 /// Compiles the kernels of one plan.
 class KernelCheck {
  public:
-  KernelCheck(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph, std::set<Hash>& checked)
+  KernelCheck(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph, CheckedKernels& checked)
       : shaders_(shaders), compiler_(compiler), graph_(graph), checked_(checked) {}
 
   void run(const ProgramOptions& options) {
@@ -95,11 +95,12 @@ class KernelCheck {
   }
   Result<void> compile(const PlanKernel& kernel, const ProgramOptions& options) {
     AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders_, graph_, kernel, options));
-    if (std::ranges::any_of(seen_, [&](const KernelDesc& other) { return same_kernel(other, desc); })) return {};
-    seen_.push_back(std::move(desc));
-    AFTERGLOW_TRY(AssembledKernel assembled, assemble(seen_.back()));
-    if (!checked_.insert(assembled.hash).second) return {};
-    AFTERGLOW_TRY(const CompiledKernel compiled, compiler_.compile(seen_.back(), std::move(assembled)));
+    const auto same = [&](const KernelDesc& other) { return same_kernel(other, desc); };
+    if (std::ranges::any_of(checked_.described, same)) return {};
+    checked_.described.push_back(desc);
+    AFTERGLOW_TRY(AssembledKernel assembled, assemble(desc));
+    if (!checked_.texts.insert(assembled.hash).second) return {};
+    AFTERGLOW_TRY(const CompiledKernel compiled, compiler_.compile(desc, std::move(assembled)));
     found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
     return {};
   }
@@ -107,14 +108,13 @@ class KernelCheck {
   ShaderLibrary& shaders_;
   KernelCompiler& compiler_;
   const Graph& graph_;
-  std::set<Hash>& checked_;
-  std::vector<KernelDesc> seen_;  // most levels of a pyramid are described alike
+  CheckedKernels& checked_;
 };
 
 }  // namespace
 
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
-                             const ExecutionConfig& config, std::set<Hash>& checked) {
+                             const ExecutionConfig& config, CheckedKernels& checked) {
   ProgramOptions options{.config = config, .inputs_are_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   options.config.guard_loops = true;

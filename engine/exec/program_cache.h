@@ -46,10 +46,17 @@ struct ShaderFindings {
   std::vector<std::string> warnings;  ///< see CompiledKernel::warnings
 };
 
+/// Kernels that were checked: most levels of a pyramid, and most of other graphs of the same look, are described alike;
+/// some that are not have the same text.
+struct CheckedKernels {
+  std::vector<KernelDesc> described;
+  std::set<Hash> texts;
+};
+
 /// Compiles every kernel that the frame's program has on a CPU device for `run`, touching none. What is wrong with
 /// each. Kernels of `checked` are not compiled again; those that were are added to it.
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
-                             const ExecutionConfig& config, std::set<Hash>& checked);
+                             const ExecutionConfig& config, CheckedKernels& checked);
 
 struct ProgramCacheOptions {
   ExecutionConfig config{};

@@ -87,7 +87,7 @@ TEST_F(ProgramTest, PassesThatAreTooMuchTogetherRunApart) {
   EXPECT_EQ((*made)->plan().kernels.size(), 2u);
   EXPECT_EQ(run(graph, inputs).pixels, run(graph, inputs, {.config = {.fusion = Fusion::none}}).pixels);
 
-  std::set<Hash> checked;
+  CheckedKernels checked;
   EXPECT_TRUE(check_kernels(*library_, *compiler_, {.graph = graph}, {}, checked).errors.empty());
   GraphBuilder heavy(size);
   const ImageId light = heavy.pixel("light", "holds", heavy.source(), {}, {{"gain", number(0.5)}});
