@@ -152,17 +152,33 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
   }
 }
 
-std::vector<Command> add_commands(CLI::App& program) {
-  return {
-      add_run_command(program),     add_check_command(program),     add_graph_command(program),
-      add_explain_command(program), add_effects_command(program),   add_new_command(program),
-      add_set_command(program),     add_devices_command(program),   add_play_command(program),
+struct KnownCommand {
+  std::string_view name;
+  Command (*add)(CLI::App& program);
+};
+
+constexpr KnownCommand kCommands[] = {
+    {"run", add_run_command},         {"check", add_check_command},         {"graph", add_graph_command},
+    {"explain", add_explain_command}, {"effects", add_effects_command},     {"new", add_new_command},
+    {"set", add_set_command},         {"devices", add_devices_command},     {"play", add_play_command},
 #ifdef AFTERGLOW_BENCH
-      add_bench_command(program),   add_calibrate_command(program), add_stress_command(program),
+    {"bench", add_bench_command},     {"calibrate", add_calibrate_command}, {"stress", add_stress_command},
 #endif
-      add_bake_command(program),    add_farm_command(program),      add_completion_command(program),
-      add_man_command(program),
-  };
+    {"bake", add_bake_command},       {"farm", add_farm_command},
+};
+
+/// The command that the first word names; all of them where it names none, or one that tells of all.
+std::vector<Command> add_commands(CLI::App& program, std::string_view first) {
+  std::vector<Command> commands;
+  const auto named = std::ranges::find(kCommands, first, &KnownCommand::name);
+  if (named != std::end(kCommands)) {
+    commands.push_back(named->add(program));
+    return commands;
+  }
+  for (const KnownCommand& command : kCommands) commands.push_back(command.add(program));
+  commands.push_back(add_completion_command(program));
+  commands.push_back(add_man_command(program));
+  return commands;
 }
 
 enum class Work { all, parsing };
@@ -175,7 +191,7 @@ int run(Console& console, int argc, char** argv, Work work) {
   program.footer(kFooter);
   program.get_formatter()->column_width(34);
 
-  const std::vector<Command> commands = add_commands(program);
+  const std::vector<Command> commands = add_commands(program, argc > 1 ? argv[1] : "");
   MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
 
