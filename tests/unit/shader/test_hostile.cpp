@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/file.h"
+#include "shader/scan.h"
 #include "shader/token.h"
 #include "shader_files.h"
 
@@ -245,7 +246,7 @@ TEST(Hostile, RandomEditsOfRealShaders) {
       "a[2]; };\n"
       "vec4 apply(vec4 c, vec4 h) { S s; return A(c) * t + h * s.a[n]; }\n"};
   for (const auto& name : library.names())
-    if (const auto source = library.find(name); source.ok()) texts.push_back((*source)->text);
+    if (const auto source = library.find(name); source.ok()) texts.push_back((*source)->file->text);
   const std::string tokens[] = {"(",
                                 ")",
                                 "{",

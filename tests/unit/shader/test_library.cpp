@@ -26,7 +26,7 @@ TEST(ShaderLibrary, FindsOnceAndForgetsOnReload) {
   ASSERT_TRUE(first.ok()) << first.error().text();
   EXPECT_EQ((*first)->name, "fx/a");
   EXPECT_EQ((*first)->path, files.path("fx/a.glsl"));
-  EXPECT_EQ((*first)->text, kSimple);
+  EXPECT_EQ((*first)->file->text, kSimple);
   files.write("fx/a.glsl", std::string("uniform float t;\n") + kSimple);
   EXPECT_EQ(*library.find("fx/a"), *first);
   library.reload();
@@ -119,7 +119,7 @@ TEST(ShaderLibrary, AFileIncludesWhatLiesInItsOwnFolderFirst) {
 
 TEST(ShaderLibrary, AByteOrderMarkIsDropped) {
   ShaderFiles files;
-  EXPECT_EQ((*files.find("a", std::string("\xEF\xBB\xBF") + kSimple))->text, kSimple);
+  EXPECT_EQ((*files.find("a", std::string("\xEF\xBB\xBF") + kSimple))->file->text, kSimple);
 }
 
 TEST(ShaderLibrary, IncludesStandOnceAndInOrder) {
