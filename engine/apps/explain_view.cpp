@@ -73,9 +73,14 @@ std::string volume_steps(const SettingHistory& setting) {
   return out;
 }
 
-std::string preset_text(const SettingHistory& setting) {
+/// With the place where the value stands, unless that is the entry's own.
+std::string preset_text(const SettingHistory& setting, const StackEntry& entry) {
   if (!setting.preset) return "";
-  return setting.preset->text() + (setting.kind == "fixed" ? "" : " (" + setting.kind + ")");
+  const bool elsewhere = setting.place && (setting.place->file != entry.file || setting.place->line != entry.line);
+  const std::string place = elsewhere ? fmt::format("{}:{}", setting.place->file, setting.place->line) : "";
+  const std::string kind = setting.kind == "fixed" ? "" : setting.kind;
+  const std::string more = kind + (kind.empty() || place.empty() ? "" : ", ") + place;
+  return setting.preset->text() + (more.empty() ? "" : " (" + more + ")");
 }
 
 std::string history_text(const Graph& graph, const History& history) {
@@ -103,7 +108,7 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
     for (const auto& setting : list) {
       if (!(view.setting.empty() ? all || is_said(setting) : shown(view.setting, setting.name))) continue;
       any = true;
-      settings.add({setting.name, setting.default_value.text(), preset_text(setting), volume_steps(setting),
+      settings.add({setting.name, setting.default_value.text(), preset_text(setting, entry), volume_steps(setting),
                     setting.overridden ? setting.overridden->text() : "", setting.value.text()});
     }
   };

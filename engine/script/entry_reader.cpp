@@ -23,9 +23,17 @@ bool has_setting(const EffectSchema& schema, const std::string& name) {
   return std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end();
 }
 
+std::shared_ptr<const CallPlace> caller_of(lua_State* lua) {
+  const Sandbox& box = Sandbox::of(lua);
+  Error place;
+  box.locate(place, box.caller(lua));
+  return std::make_shared<const CallPlace>(CallPlace{place.file, place.line});
+}
+
 // How the entry's result is put over what it was given.
 void read_composition(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared) {
   read_mask(lua, table, declared);
+  const auto place = caller_of(lua);
   const auto read = [&](const char* key, SettingSource& source) {
     if (has_setting(schema, key)) return;
     table.push(key);
@@ -34,7 +42,7 @@ void read_composition(lua_State* lua, TableReader& table, const EffectSchema& sc
     if (given.value.kind == Value::Kind::nothing) return;
     auto checked = check_animated(lua, schema.name + "." + key, entry_key_schema(key), given);
     if (checked)
-      source.preset = std::move(*checked);
+      source = {std::move(*checked), place, std::nullopt};
     else
       table.fail({checked.error(), {key}, {}});
   };
@@ -107,6 +115,7 @@ void read_entry(lua_State* lua, TableReader& table, const EffectSchema& schema, 
 
 void read_settings_of(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared,
                       const std::vector<std::string>& others) {
+  const auto place = caller_of(lua);
   for (const auto& key : table.keys()) {
     if (std::ranges::find(others, key.name) != others.end() && !has_setting(schema, key.name)) continue;
     const auto found =
@@ -119,7 +128,8 @@ void read_settings_of(lua_State* lua, TableReader& table, const EffectSchema& sc
     auto checked = check_animated(lua, schema.name + "." + key.name, *found, read_given(lua, -1));
     lua_pop(lua, 1);
     if (checked)
-      declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].preset = std::move(*checked);
+      declared.sources[static_cast<std::size_t>(found - schema.settings.begin())] = {std::move(*checked), place,
+                                                                                     std::nullopt};
     else
       table.fail({checked.error(), {key.name}, {}});
   }

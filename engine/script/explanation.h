@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -30,12 +31,19 @@ struct VolumeStep {
   SettingValue result = {};  ///< after blending it in
 };
 
+/// A call in a script: `fx.bloom { … }`, `fx.extend("look", { … })`.
+struct CallPlace {
+  std::string file;
+  int line = 0;
+};
+
 /// A setting on its way from the default to the value that runs.
 struct SettingHistory {
   std::string name;
   SettingValue default_value = {};
   std::optional<SettingValue> preset = {};      ///< at this frame
   std::string kind = {};                        ///< of the preset's value: "fixed", "curve", "function"; empty: none
+  std::shared_ptr<const CallPlace> place = {};  ///< the call that the preset's value stands in; null: not known
   std::vector<VolumeStep> volumes = {};         ///< those that name the setting, in the order of blending
   std::optional<SettingValue> overridden = {};  ///< --set
   SettingValue value = {};                      ///< final

@@ -83,6 +83,7 @@ SettingHistory history_of(lua_State* lua, const SettingSchema& schema, const Set
     history.value = evaluate(lua, *source.preset, full_name, schema, context);
     history.preset = history.value;
     history.kind = kind_of(*source.preset);
+    history.place = source.place;
   }
   history.overridden = source.overridden;
   return history;

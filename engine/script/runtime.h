@@ -16,6 +16,7 @@
 #include "script/animated.h"
 #include "script/assets.h"
 #include "script/dependencies.h"
+#include "script/explanation.h"
 #include "script/function_ref.h"
 #include "script/preset.h"
 #include "script/sandbox.h"
@@ -49,6 +50,7 @@ struct Effect {
 /// What the preset and the command line say about one setting.
 struct SettingSource {
   std::optional<Animated> preset;
+  std::shared_ptr<const CallPlace> place;  ///< of `preset`
   std::optional<SettingValue> overridden;
 };
 

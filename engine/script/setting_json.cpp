@@ -66,6 +66,10 @@ nlohmann::json setting_json(const SettingSchema& setting) {
 nlohmann::ordered_json history_json(const SettingHistory& setting) {
   nlohmann::ordered_json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
   if (setting.preset) out["preset"] = {{"value", value_json(*setting.preset)}, {"kind", setting.kind}};
+  if (setting.preset && setting.place) {
+    out["preset"]["file"] = setting.place->file;
+    out["preset"]["line"] = setting.place->line;
+  }
   out["volumes"] = nlohmann::ordered_json::array();
   for (const auto& step : setting.volumes)
     out["volumes"].push_back({{"volume", step.volume},

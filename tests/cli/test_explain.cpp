@@ -61,6 +61,33 @@ TEST_F(Explain, EverySourceOfASetting) {
   EXPECT_THAT(outcome.out, Not(HasSubstr("contrast")));
 }
 
+/// Of presets on presets.
+TEST_F(Explain, TheScriptThatAValueStandsIn) {
+  write(
+      "mid.lua",
+      "local fx = require \"afterglow\"\n\nreturn fx.extend(\"cave\", { color_adjustments = { contrast = 20, opacity = "
+      "0.5 } })\n");
+  write("top.lua", "return require(\"afterglow\").extend(\"mid\", { tone_mapping = { mode = \"neutral\" } })\n");
+  const Outcome outcome = run({"explain", "top.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              ContainsRegex("contrast +0 % +20 % \\([^ ]*mid.lua:3\\)|contrast +0 +20 \\([^ ]*mid.lua:3\\)"));
+  EXPECT_THAT(outcome.out, ContainsRegex("opacity +1 +0.5 \\([^ ]*mid.lua:3\\)"));
+  EXPECT_THAT(outcome.out, ContainsRegex("mode .*neutral\" \\([^ ]*top.lua:1\\)"));
+  EXPECT_THAT(outcome.out, ContainsRegex("post_exposure +0 +-?[0-9.]+ \\(curve\\)")) << "where its entry stands";
+  const json entries = parsed({"explain", "top.lua", "--format", "json"}).at("entries");
+  const json settings = entries.at(0).at("settings");
+  const auto preset = [&](const char* name) {
+    for (const json& setting : settings)
+      if (setting.at("name") == name) return setting.at("preset");
+    return json();
+  };
+  EXPECT_THAT(preset("contrast").at("file").get<std::string>(), HasSubstr("mid.lua"));
+  EXPECT_EQ(preset("contrast").at("line"), 3);
+  EXPECT_THAT(preset("post_exposure").at("file").get<std::string>(), HasSubstr("cave.lua"));
+  EXPECT_EQ(preset("post_exposure").at("line"), 3);
+}
+
 TEST_F(Explain, WhatBecomesOfEffectsAndPasses) {
   const Outcome outcome = run({"explain", "cave.lua", "--frame", "3"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
