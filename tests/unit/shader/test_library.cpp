@@ -2,6 +2,7 @@
 // Finding shaders and their includes on disk.
 #include <gmock/gmock.h>
 
+#include "shader/scan.h"
 #include "shader_files.h"
 
 namespace afterglow {
