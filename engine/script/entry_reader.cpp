@@ -23,11 +23,11 @@ bool has_setting(const EffectSchema& schema, const std::string& name) {
   return std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end();
 }
 
-std::shared_ptr<const CallPlace> caller_of(lua_State* lua) {
+std::shared_ptr<const ScriptPlace> caller_of(lua_State* lua) {
   const Sandbox& box = Sandbox::of(lua);
   Error place;
   box.locate(place, box.caller(lua));
-  return std::make_shared<const CallPlace>(CallPlace{place.file, place.line});
+  return std::make_shared<const ScriptPlace>(ScriptPlace{place.file, place.line});
 }
 
 // How the entry's result is put over what it was given.
@@ -42,7 +42,7 @@ void read_composition(lua_State* lua, TableReader& table, const EffectSchema& sc
     if (given.value.kind == Value::Kind::nothing) return;
     auto checked = check_animated(lua, schema.name + "." + key, entry_key_schema(key), given);
     if (checked)
-      source = {std::move(*checked), place, std::nullopt};
+      source = {.preset = std::move(*checked), .place = place, .overridden = {}};
     else
       table.fail({checked.error(), {key}, {}});
   };
@@ -128,8 +128,8 @@ void read_settings_of(lua_State* lua, TableReader& table, const EffectSchema& sc
     auto checked = check_animated(lua, schema.name + "." + key.name, *found, read_given(lua, -1));
     lua_pop(lua, 1);
     if (checked)
-      declared.sources[static_cast<std::size_t>(found - schema.settings.begin())] = {std::move(*checked), place,
-                                                                                     std::nullopt};
+      declared.sources[static_cast<std::size_t>(found - schema.settings.begin())] = {
+          .preset = std::move(*checked), .place = place, .overridden = {}};
     else
       table.fail({checked.error(), {key.name}, {}});
   }

@@ -32,7 +32,7 @@ struct VolumeStep {
 };
 
 /// A call in a script: `fx.bloom { … }`, `fx.extend("look", { … })`.
-struct CallPlace {
+struct ScriptPlace {
   std::string file;
   int line = 0;
 };
@@ -43,7 +43,7 @@ struct SettingHistory {
   SettingValue default_value = {};
   std::optional<SettingValue> preset = {};      ///< at this frame
   std::string kind = {};                        ///< of the preset's value: "fixed", "curve", "function"; empty: none
-  std::shared_ptr<const CallPlace> place = {};  ///< the call that the preset's value stands in; null: not known
+  std::shared_ptr<const ScriptPlace> place = {};  ///< the call that the preset's value stands in; null: not known
   std::vector<VolumeStep> volumes = {};         ///< those that name the setting, in the order of blending
   std::optional<SettingValue> overridden = {};  ///< --set
   SettingValue value = {};                      ///< final

@@ -50,7 +50,7 @@ struct Effect {
 /// What the preset and the command line say about one setting.
 struct SettingSource {
   std::optional<Animated> preset;
-  std::shared_ptr<const CallPlace> place;  ///< of `preset`
+  std::shared_ptr<const ScriptPlace> place;  ///< of `preset`
   std::optional<SettingValue> overridden;
 };
 
