@@ -191,7 +191,8 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   for (const auto& i : module.code) {
     if (i.op == spv::OpEntryPoint) main = i.words[2];
     const auto global = i.op == spv::OpVariable ? globals.find(i.result) : globals.end();
-    if (global != globals.end()) give(first, {global->second, ids.pointees.at(i.type), i.result});
+    if (global != globals.end() && !is_filled_by_index(module, i.result, constants))
+      give(first, {global->second, ids.pointees.at(i.type), i.result});
   }
   for (std::size_t i = 0; i < module.code.size(); ++i) {
     const Instruction& at = module.code[i];

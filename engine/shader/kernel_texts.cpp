@@ -61,10 +61,11 @@ void KernelTexts::see(const Library& library, NameMap& names) {
 }
 
 /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before it.
+/// One whose variables keep something is new to each stage: another stage would go on from what it left there.
 std::size_t KernelTexts::library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier) {
   Library added{include.path, include.file, fmt::format("ag_l{}_", libraries_.size()), {}};
   for (const auto use : include.uses) added.uses.push_back(earlier.at(use));
-  for (std::size_t i = 0; i < libraries_.size(); ++i)
+  for (std::size_t i = 0; i < libraries_.size() && !include.file->scan.keeps_state; ++i)
     if (libraries_[i].path == added.path && libraries_[i].file->text == added.file->text &&
         libraries_[i].uses == added.uses)
       return i;

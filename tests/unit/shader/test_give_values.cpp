@@ -118,6 +118,11 @@ TEST(GiveValues, WhatIsAlwaysGivenIsNotTold) {
                    "  for (int i = 0; i < 3; ++i) sum += y[i];\n  return vec4(sum);\n}\n")
                   .warnings,
               IsEmpty());
+  EXPECT_THAT(made("float w[3];\nvec4 apply(vec4 color) {\n  for (int i = 0; i < 3; ++i) w[i] = float(i);\n"
+                   "  float sum = 0.0;\n  for (int i = 2; i >= 0; --i) { sum += w[i]; if (sum > color.r) break; }\n"
+                   "  return vec4(sum);\n}\n")
+                  .warnings,
+              IsEmpty());
   EXPECT_THAT(made("vec4 apply(vec4 color) {\n  float y[3], sum = 0.0;\n"
                    "  for (int i = 0; i < 3; ++i) sum += y[i];\n  return vec4(sum);\n}\n")
                   .warnings,

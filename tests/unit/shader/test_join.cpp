@@ -111,6 +111,24 @@ TEST_F(Join, ALibraryStandsOnceInAKernel) {
   EXPECT_EQ(outcome(join({a, b, a})), "ok");
 }
 
+/// A generator of random numbers: each pass begins with its first one, fused or not.
+TEST_F(Join, ALibraryThatKeepsSomethingStandsOnceForEachStage) {
+  files_.write(
+      "lib/random.glsl",
+      "uint state = 12345u;\nfloat next() { state = state * 1664525u + 1013904223u; return float(state >> 24); "
+      "}\n");
+  files_.write("lib/uses.glsl", "#include \"lib/random.glsl\"\nfloat twice() { return next() + next(); }\n");
+  const auto a = files_.stage("a/x",
+                              "#include \"lib/random.glsl\"\n#include \"lib/uses.glsl\"\n"
+                              "vec4 apply(vec4 c) { return c + next() + twice(); }\n");
+  const auto text = assembled(join({a, a}));
+  for (const char* mine :
+       {"uint ag_l0_state = 12345u;", "ag_l0_next() + ag_l0_next()", "c + ag_l0_next() + ag_l1_twice()",
+        "uint ag_l2_state = 12345u;", "ag_l2_next() + ag_l2_next()", "c + ag_l2_next() + ag_l3_twice()"})
+    EXPECT_THAT(text, HasSubstr(mine));
+  EXPECT_EQ(outcome(join({a, a})), "ok");
+}
+
 TEST_F(Join, LibrariesOfOneNameFromTwoFoldersStandApart) {
   files_.write("a/helper.glsl", "float helper() { return 1.0; }\n");
   files_.write("b/helper.glsl", "float helper() { return 2.0; }\n");
