@@ -14,7 +14,7 @@ namespace afterglow {
 void Player::State::watch_finite() {
   if (!finite_watch || !picture || shown.position < 0 || shown.failed || shown.unreadable) return;
   const std::uint64_t build = first->live().status().generation;
-  const std::pair now_shown{build, shown.number};
+  const std::pair now_shown{build, shown.position};
   if (build == 0 || asked_finite == now_shown) return;
   if (transport.playing() && asked_finite && asked_finite->first == build) return;
   asked_finite = now_shown;

@@ -59,10 +59,9 @@ struct Player::State {
   std::unique_ptr<ReadAhead> ahead;         // its threads use the rest, as that of the next does
   std::unique_ptr<FootageWatch> rendering;  ///< null: files stay as they are
 
-  /// What frames were looked at for: build and frame number.
-  std::optional<std::pair<std::uint64_t, int>> asked_finite;
-  std::set<std::string> told_finite;          ///< passes that were told, since all was well
-  std::unique_ptr<FiniteWatch> finite_watch;  ///< null: nobody looks
+  std::optional<std::pair<std::uint64_t, int>> asked_finite;  ///< what was looked at last: build and position
+  std::set<std::string> told_finite;                          ///< passes that were told, since all was well
+  std::unique_ptr<FiniteWatch> finite_watch;                  ///< null: nobody looks
 
   std::unique_ptr<Sound> sound;  ///< null: all is silent
   SoundFollower sound_follower;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -16,6 +15,7 @@
 #include "shader/directives.h"
 #include "shader/entry_point.h"
 #include "shader/foreign_words.h"
+#include "shader/literal.h"
 #include "shader/macro_arguments.h"
 #include "shader/qualifiers.h"
 #include "shader/workgroup.h"
@@ -191,7 +191,7 @@ class ShaderScanner {
       negative = token().is("-");
       ++at_;
     }
-    const auto value = literal(token(), *type);
+    const auto value = literal_value(token(), *type);
     if (!value)
       return fail(line(), fmt::format("the default of '{}' must be a literal of type {}", name.text, glsl_name(*type)));
     ++at_;
@@ -202,27 +202,6 @@ class ShaderScanner {
     out_.edits.push_back(
         {code_[begin_]->offset, code_[at_ - 1]->end(), static_cast<int>(out_.interface.params.size()) - 1});
     return {};
-  }
-
-  static std::optional<double> literal(const Token& token, ParamType type) {
-    if (type == ParamType::bool1) {
-      if (token.is("true")) return 1.0;
-      if (token.is("false")) return 0.0;
-      return std::nullopt;
-    }
-    if (token.kind != TokenKind::number) return std::nullopt;
-    std::string text(token.text);
-    if (type == ParamType::int1) {
-      int value = 0;
-      const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-      return value;
-    }
-    while (text.size() > 1 && (text.back() == 'f' || text.back() == 'F')) text.pop_back();
-    double value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
   }
 
   /// `uniform TYPE NAME, NAME;`, at the type.

@@ -29,6 +29,19 @@ std::vector<std::string> names(const ShaderScan& scan) {
   return out;
 }
 
+TEST(Scan, WholeNumbersOfEveryNotation) {
+  const auto value = [](const std::string& literal) {
+    return scanned("layout(constant_id = 0) const int n = " + literal + ";\nvec4 apply(vec4 c) { return c; }\n")
+        .interface.params.at(0)
+        .default_value;
+  };
+  EXPECT_EQ(value("16"), 16);
+  EXPECT_EQ(value("0x1F"), 31);
+  EXPECT_EQ(value("-0X10"), -16);
+  EXPECT_EQ(value("010"), 8);
+  EXPECT_EQ(value("0"), 0);
+}
+
 TEST(Scan, PixelShaderWithInputsAndParameters) {
   const auto scan = scanned(R"(// uniform float not_this;
 /* uniform float
