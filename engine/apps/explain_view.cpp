@@ -73,10 +73,10 @@ std::string volume_steps(const SettingHistory& setting) {
   return out;
 }
 
-/// With the place where the value stands, unless that is the entry's own.
+/// With the place where the value stands, when that is another script than the entry's.
 std::string preset_text(const SettingHistory& setting, const StackEntry& entry) {
   if (!setting.preset) return "";
-  const bool elsewhere = setting.place && (setting.place->file != entry.file || setting.place->line != entry.line);
+  const bool elsewhere = setting.place && setting.place->file != entry.file;
   const std::string place = elsewhere ? fmt::format("{}:{}", setting.place->file, setting.place->line) : "";
   const std::string kind = setting.kind == "fixed" ? "" : setting.kind;
   const std::string more = kind + (kind.empty() || place.empty() ? "" : ", ") + place;

@@ -76,7 +76,7 @@ TEST_F(Explain, TheScriptThatAValueStandsIn) {
   EXPECT_THAT(outcome.out, ContainsRegex("mode .*neutral\" \\([^ ]*top.lua:1\\)"));
   EXPECT_THAT(outcome.out, ContainsRegex("post_exposure +0 +-?[0-9.]+ \\(curve\\)")) << "where its entry stands";
   const json entries = parsed({"explain", "top.lua", "--format", "json"}).at("entries");
-  const json settings = entries.at(0).at("settings");
+  const json settings = entries.at(1).at("settings");
   const auto preset = [&](const char* name) {
     for (const json& setting : settings)
       if (setting.at("name") == name) return setting.at("preset");
@@ -107,7 +107,7 @@ TEST_F(Explain, AsJson) {
   EXPECT_EQ(entry.at("state"), "runs");
   const json& exposure = entry.at("settings").at(0);
   EXPECT_EQ(exposure.at("default"), 0);
-  EXPECT_EQ(exposure.at("preset"), (json{{"value", 3}, {"kind", "curve"}}));
+  EXPECT_EQ(exposure.at("preset"), (json{{"value", 3}, {"kind", "curve"}, {"file", "cave.lua"}, {"line", 3}}));
   EXPECT_EQ(exposure.at("volumes").at(0).at("result"), -3);
   EXPECT_EQ(exposure.at("final"), -3);
   EXPECT_FALSE(exposure.contains("override"));
@@ -165,7 +165,8 @@ TEST_F(Explain, HowEntriesArePutOverWhatTheyWereGiven) {
       EXPECT_EQ(entry.at("opacity"), 0.5);
       EXPECT_EQ(entry.at("blend"), "screen");
       EXPECT_EQ(entry.at("mask"), "luma * (1 - radial)");
-      EXPECT_EQ(entry.at("composition").at(0).at("preset"), (json{{"value", 0.5}, {"kind", "curve"}}));
+      EXPECT_EQ(entry.at("composition").at(0).at("preset"),
+                (json{{"value", 0.5}, {"kind", "curve"}, {"file", "faded.lua"}, {"line", 3}}));
     } else if (entry.at("name") == "channel_mixer") {
       EXPECT_EQ(entry.at("composition").at(0).at("override"), 0);
     }

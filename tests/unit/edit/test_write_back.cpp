@@ -245,7 +245,7 @@ TEST_F(WriteBack, EntriesThatAreMadeTogetherChangeTogether) {
       rewrite(loop, {{"glow", "knee", number(1)}, {"glow#2", "knee", number(1)}, {"glow#3", "knee", number(1)}});
   ASSERT_TRUE(out) << out.error().text();
   EXPECT_TRUE(out->refused.empty());
-  EXPECT_THAT(out->text, HasSubstr("all[i] = fx.glow { knee = 1.0 }"));
+  EXPECT_THAT(out->text, HasSubstr("all[i] = fx.glow { knee = 1 }"));
   EXPECT_EQ(out->written.size(), 3u);
 }
 
