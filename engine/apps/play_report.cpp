@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "apps/options.h"
-#include "batch/non_finite_json.h"
 #include "batch/run_report.h"
 #include "core/json_text.h"
 #include "core/table.h"

@@ -2,6 +2,7 @@
 #include "batch/non_finite_json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace afterglow {

@@ -2,7 +2,7 @@
 // What reports say of values that are not finite.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "batch/non_finite_record.h"
 

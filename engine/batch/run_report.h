@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "batch/frame_list.h"
+#include "batch/non_finite_json.h"
 #include "batch/non_finite_record.h"
 #include "session/session.h"
 

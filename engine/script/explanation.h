@@ -31,7 +31,7 @@ struct VolumeStep {
   SettingValue result = {};  ///< after blending it in
 };
 
-/// A call in a script: `fx.bloom { … }`, `fx.extend("look", { … })`.
+/// A call in a script: `fx.NAME { … }`, `fx.extend("look", { … })`.
 struct ScriptPlace {
   std::string file;
   int line = 0;
