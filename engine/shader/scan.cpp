@@ -18,6 +18,7 @@
 #include "shader/literal.h"
 #include "shader/macro_arguments.h"
 #include "shader/qualifiers.h"
+#include "shader/records.h"
 #include "shader/workgroup.h"
 
 namespace afterglow {
@@ -57,6 +58,9 @@ class ShaderScanner {
     }
     code_tokens_ = code_tokens(out_.tokens);
     for (const auto& token : code_tokens_) code_.push_back(&token);
+    if (const Token* record = record_with_too_many_members(code_))
+      return fail(*record, fmt::format("'{}' has more than {} members, with those of the records that it is made of",
+                                       record->text, kMostMembers));
     AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));
     for (const auto& macro : directives.macros) AFTERGLOW_CHECK(add_name(macro, true));
     const FieldArguments fields = field_arguments(out_.tokens);

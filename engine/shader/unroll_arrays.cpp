@@ -9,6 +9,7 @@
 
 #include "core/saturated.h"
 #include "shader/filter_anchor.h"
+#include "shader/function_weights.h"
 #include "shader/spirv_loops.h"
 #include "shader/spirv_module.h"
 #include "shader/spirv_passes.h"
@@ -22,100 +23,6 @@ constexpr std::size_t kMostTrials = 16, kMostLoops = 48;  ///< of a kernel: to f
 constexpr std::uint64_t kMostMore = 8192;      ///< operations that a kernel has more than before, for each row
 constexpr std::uint64_t kMostTried = 32768;    ///< of a loop, before anything is known of its turns
 constexpr std::uint64_t kWorthOfAccess = 256;  ///< operations beside which memory does not count
-
-/// Functions of GLSL.std.450 that are an instruction or two: rounding, abs, sign; min, max, clamp, mix; step; fma; min
-/// and max beside NaN.
-bool is_cheap(std::uint32_t function) {
-  const auto within = [&](std::uint32_t first, std::uint32_t last) { return function >= first && function <= last; };
-  return within(1, 10) || within(37, 46) || function == 48 || function == 50 || within(79, 81);
-}
-
-/// What an instruction comes to in registers: memory is none of it, since arrays are to become values.
-std::uint64_t weight_of(const Instruction& i) {
-  constexpr std::uint64_t kOfFunction = 32, kOfImage = 16, kOfBranch = 16;
-  switch (i.op) {
-    case spv::OpLoad:
-    case spv::OpStore:
-    case spv::OpAccessChain:
-    case spv::OpLabel:
-    case spv::OpBranch:
-    case spv::OpLoopMerge:
-    case spv::OpVariable:
-    case spv::OpLine:
-    case spv::OpNoLine:
-      return 0;
-    case spv::OpSelectionMerge:
-      return kOfBranch;
-    case spv::OpExtInst:
-      return is_cheap(i.words[4]) ? 1 : kOfFunction;
-    default:
-      return i.op >= spv::OpSampledImage && i.op <= spv::OpImageQuerySamples ? kOfImage : 1;
-  }
-}
-
-/// The functions of a module: what each comes to with all that it calls, and how often it is called.
-class FunctionWeights {
- public:
-  explicit FunctionWeights(const Module& module) {
-    Function* function = nullptr;
-    for (const auto& i : module.code) {
-      if (i.op == spv::OpFunction) {
-        order_.push_back(i.result);
-        function = &functions_[i.result];
-      }
-      if (i.op == spv::OpEntryPoint) functions_[i.words[2]].times = 1;
-      if (!function) continue;
-      function->own += weight_of(i);
-      function->loops |= i.op == spv::OpLoopMerge;
-      if (i.op == spv::OpFunctionCall) function->calls.push_back(i.words[3]);
-    }
-    for (const auto id : order_) weight(id);
-    count_calls();
-  }
-
-  std::uint64_t weight(const Instruction& i) {
-    return i.op == spv::OpFunctionCall ? saturated_sum({1, weight(i.words[3])}) : weight_of(i);
-  }
-  /// A call of what turns loops.
-  bool turns(const Instruction& i) { return i.op == spv::OpFunctionCall && functions_[i.words[3]].loops; }
-  std::uint64_t times(std::uint32_t function) { return functions_[function].times; }
-
- private:
-  struct Function {
-    std::uint64_t own = 0, whole = 0, times = 0;
-    std::vector<std::uint32_t> calls;
-    bool loops = false;  ///< its own, or those of what it calls
-    bool weighed = false, counted = false;
-  };
-
-  /// GLSL has no recursion.
-  std::uint64_t weight(std::uint32_t id) {
-    Function& function = functions_[id];
-    if (std::exchange(function.weighed, true)) return function.whole;
-    std::uint64_t whole = function.own;
-    for (const auto called : function.calls) {
-      whole = saturated_sum({whole, weight(called)});
-      function.loops |= functions_[called].loops;
-    }
-    return function.whole = whole;
-  }
-  /// Callers first.
-  void count_calls() {
-    std::vector<std::uint32_t> callees_first;
-    for (const auto id : order_) visit(id, callees_first);
-    for (auto id = callees_first.rbegin(); id != callees_first.rend(); ++id)
-      for (const auto called : functions_[*id].calls)
-        functions_[called].times = saturated_sum({functions_[called].times, functions_[*id].times});
-  }
-  void visit(std::uint32_t id, std::vector<std::uint32_t>& callees_first) {
-    if (std::exchange(functions_[id].counted, true)) return;
-    for (const auto called : functions_[id].calls) visit(called, callees_first);
-    callees_first.push_back(id);
-  }
-
-  std::map<std::uint32_t, Function> functions_;
-  std::vector<std::uint32_t> order_;
-};
 
 using Labels = std::set<std::uint32_t>;
 
@@ -256,7 +163,7 @@ class Unroller {
   /// False: that is not possible, or does not pay; it is left in some state then.
   bool unrolls(const Loop& loop, const Arrays& arrays) {
     const std::uint32_t function = module_.code[loop.function].result;
-    if (!unroll_all_within(loop, function)) return false;
+    if (copies_of_all_within(loop) > kMostTried || !unroll_all_within(loop, function)) return false;
     decorate_copies();
     drop_dead_branches();
     // Copies of loops are more for a driver than an array in memory.
@@ -264,6 +171,32 @@ class Unroller {
     const Arrays left = Steps(module_).within(made_);
     const auto is_left = [&](const auto& array) { return left.contains(array.first); };
     return !std::ranges::all_of(arrays, is_left) && pay(function);
+  }
+
+  /// What the copies of one body come to, that of the loop or of one within it: turns are multiplied.
+  std::uint64_t copies_of_all_within(const Loop& outermost) {
+    const Steps steps(module_);
+    std::vector<Loop> nest;
+    for (auto& loop : find_loops(module_))
+      if (outermost.blocks.contains(loop.header) && is_short(loop) && !steps.within(loop.blocks).empty())
+        nest.push_back(std::move(loop));
+    std::map<std::uint32_t, std::uint64_t> turns;  // header of a loop → how often its body stands there
+    for (const Loop& loop : nest) {
+      std::uint64_t& all = turns[loop.header] = 1;
+      for (const Loop& around : nest)
+        if (around.blocks.contains(loop.header)) all = saturated_product({all, *around.counting->turns});
+    }
+    std::map<std::uint32_t, std::uint64_t> weights;
+    std::uint32_t label = 0;
+    for (const auto& i : module_.code) {
+      if (i.op == spv::OpLabel) label = i.result;
+      for (const Loop& loop : nest)
+        if (loop.blocks.contains(label))
+          weights[loop.header] = saturated_sum({weights[loop.header], functions_.weight(i)});
+    }
+    std::uint64_t most = 0;
+    for (const auto& [header, weight] : weights) most = std::max(most, saturated_product({weight, turns[header]}));
+    return most;
   }
 
   bool unroll_all_within(const Loop& outermost, std::uint32_t function) {

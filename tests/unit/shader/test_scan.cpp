@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a shader declares, and every message about what it must not.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "shader/scan.h"
@@ -27,6 +28,23 @@ std::vector<std::string> names(const ShaderScan& scan) {
   std::vector<std::string> out;
   for (const auto& name : scan.names) out.push_back(name.name);
   return out;
+}
+
+TEST(Scan, RecordsThatGrowAreRefused) {
+  const auto chain = [](int deep, const std::string& before, const std::string& behind) {
+    std::string text = before + "struct S0 { float a; };\n";
+    for (int i = 1; i < deep; ++i) text += fmt::format("struct S{} {{ S{} a, b; }};\n", i, i - 1);
+    return text + behind;
+  };
+  const std::string end = "vec4 apply(vec4 c) { return c; }\n";
+  EXPECT_TRUE(scan(chain(11, "", end), "a.glsl", ScanAs::stage)) << "1024 members";
+  const auto grown = scan(chain(40, "", end), "a.glsl", ScanAs::stage);
+  ASSERT_FALSE(grown);
+  EXPECT_EQ(grown.error().text(),
+            "a.glsl:12: error: 'S11' has more than 1024 members, with those of the records that it is made of");
+  const auto local = scan(chain(40, "vec4 apply(vec4 c) {\n", "S39 s; return c; }\n"), "a.glsl", ScanAs::stage);
+  ASSERT_FALSE(local);
+  EXPECT_EQ(local.error().line, 13);
 }
 
 TEST(Scan, WholeNumbersOfEveryNotation) {

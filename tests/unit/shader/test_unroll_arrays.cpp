@@ -143,6 +143,14 @@ TEST(UnrollArrays, FunctionsAndCountersBehindTheLoop) {
             0);
 }
 
+/// Each loop alone is light; all copies together kept the compiler for minutes.
+TEST(UnrollArrays, NestsOfManyTurnsStay) {
+  EXPECT_EQ(loops_left("  float a[64];\n  for (int i = 0; i < 64; ++i) a[i] = fetch(source, p).r;\n"
+                       "  for (int i = 0; i < 64; ++i) for (int j = 0; j < 64; ++j)\n"
+                       "    for (int k = 0; k < 7; ++k) a[i] += a[j] * a[k] * 1e-3;\n  return vec4(a[5]);\n"),
+            4);
+}
+
 TEST(UnrollArrays, OtherLoopsStay) {
   const std::string behind = "  return vec4(sum, 1.0);\n", sum = "  vec3 sum = vec3(0.0);\n";
   // Left by what is found.
