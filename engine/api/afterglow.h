@@ -338,7 +338,8 @@ static inline afterglow_run_info afterglow_run_info_default(void) {
 
 /* Runs the stack on a picture and waits for the result. What the size needs is made first, if it is not there: shaders,
  * pipelines, memory. Values that are not finite, and negative colours (but for looks that say `gamut = "keep"`), are
- * mended as they are read, and the message callback is told once of each image. Alpha comes out as it went in. One thread at a time.
+ * mended as they are read, and the message callback is told once of each image. Alpha comes out as it went in. One
+ * thread at a time.
  * On an adopted device the caller must not use the queue meanwhile.
  * Errors: usage (sizes, channels), script (at this frame), io (memory limit), device. After an error the result may
  * have been written in part. */
