@@ -131,9 +131,10 @@ std::string number_text(double value) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
   // A setting that came as 0.2 must print as 0.2 whether it was kept as a float or as a double.
   const std::string as_double = fmt::format("{}", value);
-  const double size = std::abs(value);
-  if (size > std::numeric_limits<float>::max() || size < std::numeric_limits<float>::min()) return as_double;
-  const std::string as_float = fmt::format("{}", static_cast<float>(value));
+  if (std::abs(value) > std::numeric_limits<float>::max()) return as_double;
+  const float rounded = static_cast<float>(value);
+  if (rounded == 0 && value != 0) return as_double;
+  const std::string as_float = fmt::format("{}", rounded);
   return as_double.size() <= as_float.size() ? as_double : as_float;
 }
 
