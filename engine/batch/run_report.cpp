@@ -10,7 +10,6 @@
 #include <span>
 #include <thread>
 
-#include "batch/non_finite_json.h"
 #include "core/json_text.h"
 #include "core/table.h"
 #include "core/text.h"

@@ -105,8 +105,10 @@ class Rewriter {
     bool expression = false;
     for (const Place& place : *places) {
       task.place = place;
-      if (places_ == Places::first && takes(task)) return {};
-      if (places_ == Places::first) continue;
+      if (places_ == Places::first) {
+        if (takes(task)) return {};
+        continue;
+      }
       auto failure = try_place(task, places->size() == 1);
       if (!failure) return {};
       // An expression says most; else the first place, which fits best.

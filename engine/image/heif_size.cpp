@@ -77,7 +77,7 @@ class HeifItems {
       Numbers numbers(bytes);
       numbers.next(4);
       const std::uint64_t width = numbers.next(4);
-      add(size_of(width, numbers.next(4)));
+      add(claimed_sides(width, numbers.next(4)));
     } else if (box.type == "iinf") {
       const std::uint64_t count_bytes = version(box) == 0 ? 2 : 4;
       walk(box.begin + 4 + count_bytes, box.end, [&](const IsoBox& entry) { take_type(entry); });
@@ -139,7 +139,7 @@ class HeifItems {
     const std::size_t wide = (numbers.next(1) & 1) != 0 ? 4 : 2;
     numbers.next(type->second == kGrid ? 2 : 8);  // rows and columns, or the colour behind the items
     const std::uint64_t width = numbers.next(wide);
-    return size_of(width, numbers.next(wide));
+    return claimed_sides(width, numbers.next(wide));
   }
 
   /// Zeros beyond its end, as libheif has it.
@@ -161,10 +161,6 @@ class HeifItems {
     return bytes;
   }
 
-  static Size size_of(std::uint64_t width, std::uint64_t height) {
-    constexpr std::uint64_t kLargest = 0x7fffffff;
-    return {static_cast<int>(std::min(width, kLargest)), static_cast<int>(std::min(height, kLargest))};
-  }
   void add(Size size) {
     if (!largest_ || size.area() > largest_->area()) largest_ = size;
   }

@@ -84,9 +84,7 @@ Result<std::optional<ClaimedSize>> check_jpeg2000(const std::filesystem::path& f
       return malformed(file, "has channels of different sizes, which cannot be read right");
     across = x, down = y;
   }
-  constexpr std::uint64_t kMost = 0x7fffffff;
-  const Size claimed{static_cast<int>(std::min(x1 - x0, kMost)), static_cast<int>(std::min(y1 - y0, kMost))};
-  return std::optional(ClaimedSize{claimed, 8 * channels});
+  return std::optional(ClaimedSize{claimed_sides(x1 - x0, y1 - y0), 8 * channels});
 }
 
 }  // namespace afterglow

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "play/finite_watch.h"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -12,7 +8,7 @@
 #include <utility>
 
 #include "core/exception.h"
-#include "core/parallel.h"
+#include "core/give_way.h"
 #include "core/stopwatch.h"
 #include "session/picture_inputs.h"
 #include "session/session.h"
@@ -20,7 +16,6 @@
 namespace afterglow {
 namespace {
 
-constexpr int kNice = 15;  // Linux keeps it by thread; those that the device makes are born with it
 constexpr auto kQuiet = std::chrono::milliseconds(400);
 
 Result<FiniteAnswer> answer(const DeviceOptions& device, StackOptions stack, const FiniteQuestion& question) {
@@ -63,9 +58,7 @@ struct FiniteWatch::State {
 };
 
 void FiniteWatch::State::run() {
-  // A priority that cannot be lowered is no error.
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
-  loop_alone();
+  give_way();
   std::unique_lock lock(mutex);
   while (!ends) {
     if (!question || (options.until_asked && !hurries)) {

@@ -13,10 +13,9 @@ namespace afterglow {
 /// The first frame of each build is looked at, and each that stands still.
 void Player::State::watch_finite() {
   if (!finite_watch || !picture || shown.position < 0 || shown.failed || shown.unreadable) return;
-  const std::uint64_t build = first->live().status().generation;
-  const std::pair now_shown{build, shown.position};
-  if (build == 0 || asked_finite == now_shown) return;
-  if (transport.playing() && asked_finite && asked_finite->first == build) return;
+  const std::pair now_shown{measured, shown.position};
+  if (measured == 0 || asked_finite == now_shown) return;
+  if (transport.playing() && asked_finite && asked_finite->first == measured) return;
   asked_finite = now_shown;
   FiniteQuestion question{.preset = options.preset,
                           .text = {},

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "window/thumbnails.h"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <condition_variable>
 #include <map>
@@ -14,7 +10,7 @@
 
 #include "core/exception.h"
 #include "core/file.h"
-#include "core/parallel.h"
+#include "core/give_way.h"
 #include "edit/stack_edit.h"
 #include "image/scale.h"
 #include "image/srgb.h"
@@ -25,7 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kMostDeviceMemory = 256u << 20;
-constexpr int kNice = 15;  // Linux keeps it by thread; those that the device makes are born with it
 
 /// A frame made small, with what presets are told about it.
 struct SmallFrame {
@@ -180,9 +175,7 @@ void Thumbnails::State::make_all(std::unique_lock<std::mutex>& lock) {
 }
 
 void Thumbnails::State::run() {
-  // A priority that cannot be lowered is no error.
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
-  loop_alone();
+  give_way();
   std::unique_lock lock(mutex);
   while (!ends) {
     if (next() && !rests) make_all(lock);
