@@ -113,6 +113,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   AFTERGLOW_CHECK(check_usable(kernel.spirv, assembled, stage));
   ArraysUnrolled unrolled = unroll_over_arrays(std::move(kernel.spirv), desc.config.rows);
   kernel.spirv = std::move(unrolled.spirv);
+  kernel.unset = read_before_written(kernel.spirv, assembled.unset);
   if (desc.config.guard_loops) {
     LoopsGuarded guarded = guard_loops(kernel.spirv, static_cast<std::uint32_t>(bound) + 1);
     kernel.spirv = std::move(guarded.spirv);
@@ -120,9 +121,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
       AFTERGLOW_TRY(kernel.loops, loop_places(assembled.glsl, stage, unrolled.loops));
     }
   }
-  ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
-  kernel.spirv = std::move(given.spirv);
-  kernel.unset = std::move(given.read);
+  kernel.spirv = give_values(std::move(kernel.spirv));
   if (desc.config.rows > 1) {
     auto in_turns = interleave_rows(kernel.spirv, kTogether);
     kernel.rows_pay = in_turns.has_value();

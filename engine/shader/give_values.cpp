@@ -11,6 +11,7 @@
 
 #include "shader/cpu/interleave.h"
 #include "shader/spirv_passes.h"
+#include "shader/unset_uses.h"
 
 namespace afterglow {
 namespace {
@@ -128,45 +129,12 @@ bool is_filled_by_index(const Module& module, std::uint32_t variable, const std:
   return any_index && stored;
 }
 
-/// Follows a vector while its components are given one by one.
-class VectorUses {
- public:
-  explicit VectorUses(const Module& module) : module_(module) {
-    for (const auto& i : module.code)
-      if (i.op == spv::OpTypeVector) whole_[i.words[1]] = (1u << i.words[3]) - 1;
-  }
-
-  /// Whether something of the value that `load` gives is used.
-  bool reads(const Instruction& load) const { return !whole_.contains(load.type) || reads(load.result, load.type, 0); }
-
- private:
-  /// `given`: the components of `id` that are no longer what was loaded, as bits.
-  bool reads(std::uint32_t id, std::uint32_t type, std::uint32_t given) const {
-    for (const auto& i : module_.code) {
-      const bool uses = i.result != id && std::ranges::any_of(i.ids, [&](auto word) { return i.words[word] == id; });
-      if (!uses || i.op == spv::OpName || i.op == spv::OpDecorate) continue;
-      if (i.op == spv::OpCompositeExtract && i.words.size() == 5 && (given >> i.words[4] & 1) != 0) continue;
-      const bool inserts =
-          i.op == spv::OpCompositeInsert && i.words.size() == 6 && i.words[4] == id && i.words[3] != id;
-      if (!inserts) return true;
-      const std::uint32_t now = given | 1u << i.words[5];
-      if (now != whole_.at(type) && reads(i.result, type, now)) return true;
-    }
-    return false;
-  }
-
-  const Module& module_;
-  std::map<std::uint32_t, std::uint32_t> whole_;  ///< vector type → a bit for each component
-};
-
-/// The numbers of marks whose value is used. For that each variable gets the value of an input of its own; what is left
-/// of those once dead code has gone is used.
-std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
-                                               const std::vector<AssembledKernel::UnsetVariable>& unset) {
+/// The module with the value of an input of its own in place of each mark. `sources`: input → number of the mark.
+Module with_inputs(Module module, const Ids& ids, const std::vector<AssembledKernel::UnsetVariable>& unset,
+                   std::map<std::uint32_t, std::uint32_t>& sources) {
   std::set<std::uint32_t> constants;
   for (const auto& i : module.code)
     if (i.op == spv::OpConstant) constants.insert(i.result);
-  std::map<std::uint32_t, std::uint32_t> sources;  // variable → number of the mark
   std::vector<Instruction> declarations;
   const auto source = [&](std::uint32_t type, std::uint32_t number) {
     const std::uint32_t pointer = module.fresh(), variable = module.fresh();
@@ -220,30 +188,7 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   module.code = std::move(code);
   declare(module, declarations);
 
-  // Each row does the same, so one is looked at. What variables of file scope hold is only seen in one function.
-  if (globals.empty() || !inlines_quickly(module)) forbid_inlining(module, function_named(module, kRowFunction));
-  if (!inlines_quickly(module)) return {};  // a word too few is better than one that is wrong
-  // Functions with several returns are not inlined; what they write is not seen then.
-  spvtools::Optimizer optimizer(kSpirvEnvironment);
-  optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass()).RegisterPass(spvtools::CreateMergeReturnPass());
-  add_inlining_passes(optimizer);
-  // A variable whose parts were pointed at is followed once those pointers, unused by now, are gone.
-  optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
-      .RegisterPass(spvtools::CreateSSARewritePass())
-      .RegisterPass(spvtools::CreateDeadBranchElimPass())
-      .RegisterPass(spvtools::CreateAggressiveDCEPass());
-  std::vector<std::uint32_t> read;
-  const auto left = run_passes(optimizer, module);
-  if (!left) return read;
-  const VectorUses uses(*left);
-  for (const auto& i : left->code) {
-    if (i.op != spv::OpLoad && i.op != spv::OpAccessChain) continue;
-    const auto found = sources.find(i.words[3]);
-    if (found != sources.end() && (i.op != spv::OpLoad || uses.reads(i))) read.push_back(found->second);
-  }
-  std::ranges::sort(read);
-  read.erase(std::unique(read.begin(), read.end()), read.end());
-  return read;
+  return module;
 }
 
 }  // namespace
@@ -258,14 +203,25 @@ std::string give_result_text(std::size_t number, const std::string& type) {
   return fmt::format(" {} ag_result;{} return ag_result; ", type, give_value_text(number, "ag_result"));
 }
 
-ValuesGiven give_values(std::vector<std::uint32_t> spirv, const std::vector<AssembledKernel::UnsetVariable>& unset) {
+std::vector<std::uint32_t> read_before_written(const Words& spirv,
+                                               const std::vector<AssembledKernel::UnsetVariable>& unset) {
+  if (unset.empty()) return {};
+  auto parsed = parse(spirv);
+  if (!parsed) return {};
+  const Ids ids(*parsed);
+  std::map<std::uint32_t, std::uint32_t> sources;
+  Module module = with_inputs(std::move(*parsed), ids, unset, sources);
+  // Each row does the same, so one is looked at. What variables of file scope hold is only seen in one function.
+  const bool any_global = std::ranges::any_of(unset, [](const auto& one) { return !one.variable.empty(); });
+  if (!any_global || !inlines_quickly(module)) forbid_inlining(module, function_named(module, kRowFunction));
+  return unset_uses(module, sources);
+}
+
+Words give_values(Words spirv) {
   auto module = parse(spirv);
-  if (!module) return {std::move(spirv), {}};
+  if (!module) return spirv;
   const Ids ids(*module);
-  ValuesGiven out;
-  if (!unset.empty()) out.read = read_before_written(*module, ids, unset);
-  out.spirv = with_zeros(std::move(*module), ids);
-  return out;
+  return with_zeros(std::move(*module), ids);
 }
 
 std::string unset_warning(const AssembledKernel::UnsetVariable& unset) {

@@ -20,14 +20,13 @@ std::string give_value_text(std::size_t number, const std::string& variable);
 /// The same for what a function returns that ends without a `return`, before its last brace.
 std::string give_result_text(std::size_t number, const std::string& type);
 
-struct ValuesGiven {
-  std::vector<std::uint32_t> spirv;
-  std::vector<std::uint32_t> read;  ///< numbers of those that may be read before they are written, in order
-};
+/// The numbers of marks of which a part may be read before it is written, in order.
+std::vector<std::uint32_t> read_before_written(const std::vector<std::uint32_t>& spirv,
+                                               const std::vector<AssembledKernel::UnsetVariable>& unset);
 
 /// Marks become zeros; variables without a mark (in heads of loops, from macros) begin as zeros. What is no SPIR-V
 /// comes back as it is.
-ValuesGiven give_values(std::vector<std::uint32_t> spirv, const std::vector<AssembledKernel::UnsetVariable>& unset);
+std::vector<std::uint32_t> give_values(std::vector<std::uint32_t> spirv);
 
 /// "look/shaders/glow.glsl:7: 'u' may be read before it has a value; it is 0 there".
 std::string unset_warning(const AssembledKernel::UnsetVariable& unset);

@@ -49,7 +49,8 @@ std::map<std::uint32_t, std::uint64_t> block_sizes(const Module& module) {
 /// of straight code take turns and share what they read.
 constexpr std::uint64_t kMostTurns = 16, kMostMore = 1024;
 
-/// Asks for the loops that are to become straight code. False: there is none.
+}  // namespace
+
 bool mark_short_loops(Module& module) {
   const std::vector<Loop> loops = find_loops(module);
   const std::map<std::uint32_t, std::uint64_t> sizes = block_sizes(module);
@@ -80,8 +81,6 @@ bool mark_short_loops(Module& module) {
   }
   return any;
 }
-
-}  // namespace
 
 void be_quiet(spvtools::Optimizer& optimizer) {
   optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
@@ -120,6 +119,17 @@ bool inlines_quickly(const Module& module) {
   }
   return std::ranges::all_of(
       functions, [&](const auto& named) { return inlined_calls(functions, named.first) <= kMaxInlinedCalls; });
+}
+
+bool rewrites_quickly(const Module& module) {
+  std::uint64_t variables = 0, blocks = 0;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpFunction) variables = blocks = 0;
+    variables += i.op == spv::OpVariable && i.words[3] == spv::StorageClassFunction;
+    blocks += i.op == spv::OpLabel;
+    if (i.op == spv::OpFunctionEnd && variables * blocks > kMaxVariablesTimesBlocks) return false;
+  }
+  return true;
 }
 
 void add_inlining_passes(spvtools::Optimizer& optimizer) {
@@ -166,7 +176,7 @@ std::optional<Module> without_variables(const Module& module) {
   add_inlining_passes(inlining);
   inlining.RegisterPass(spvtools::CreateAggressiveDCEPass());
   auto inlined = run_passes(inlining, module);
-  if (!inlined) return std::nullopt;
+  if (!inlined || !rewrites_quickly(*inlined)) return std::nullopt;
   const bool short_loops = mark_short_loops(*inlined);
   spvtools::Optimizer optimizer(kSpirvEnvironment);
   be_quiet(optimizer);

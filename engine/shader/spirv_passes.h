@@ -36,6 +36,12 @@ bool is_pure_function(const Instruction& function);
 /// False: the inlining passes would take too long for this module.
 bool inlines_quickly(const Module& module);
 
+/// And as the variables of a function times its blocks (SSARewritePass): a second for so many.
+inline constexpr std::uint64_t kMaxVariablesTimesBlocks = 1 << 17;
+
+/// False: turning the variables of this module into values would take too long.
+bool rewrites_quickly(const Module& module);
+
 /// Nothing when a pass fails.
 std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Module& module);
 
@@ -43,6 +49,9 @@ std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Mod
 /// differs between ways of execution, and a driver for CPUs takes it from the memory of the process. Errors: other (no
 /// module of GLSL's memory model).
 Result<Words> with_held_indices(const Words& spirv);
+
+/// Asks LoopUnrollPass for the loops of a few turns, as long as not much code comes of it. False: there is none.
+bool mark_short_loops(Module& module);
 
 /// Values in place of functions, their arguments and variables, straight code in place of loops of a few turns, and
 /// blocks without those that are never entered.

@@ -46,7 +46,10 @@ void steps(const Words& spirv, const std::vector<AssembledKernel::UnsetVariable>
         return out.spirv;
       },
       [](const Words& in) { return guard_loops(in, 17).spirv; },
-      [&unset](const Words& in) { return give_values(in, unset).spirv; },
+      [&unset](const Words& in) {
+        for (const auto number : read_before_written(in, unset)) FUZZ_CLAIM(number < unset.size(), text_of(in));
+        return give_values(in);
+      },
       [](const Words& in) { return interleave_rows(in, 4).value_or(in); },
       [](const Words& in) { return merge_equal(in).spirv; },
       [](const Words& in) { return defeat_uniform_inlining(in); },

@@ -18,7 +18,7 @@ inline CompiledKernel untouched(const KernelDesc& desc, CompiledKernel compiled)
   EXPECT_TRUE(assembled);
   const auto spirv = compile_glsl(assembled->glsl, assembled->file_names);
   EXPECT_TRUE(spirv);
-  const auto held = with_held_indices(give_values(*spirv, assembled->unset).spirv);
+  const auto held = with_held_indices(give_values(*spirv));
   EXPECT_TRUE(held);
   compiled.spirv = desc.config.defeat_uniform_inlining ? defeat_uniform_inlining(*held) : *held;
   compiled.hash = Hasher().add(compiled.hash.hex()).add("untouched").finish();
