@@ -45,8 +45,8 @@ class ShaderScanner {
  public:
   ShaderScanner(const std::string& file, ScanAs as) : file_(file), as_(as) {}
 
-  Result<ShaderScan> run(std::vector<Token> tokens) {
-    out_.tokens = std::move(tokens);
+  Result<ShaderScan> run(TextTokens text) {
+    out_.tokens = std::move(text.tokens);
     for (const auto& token : out_.tokens) {
       if (token.is_identifier() && token.text.starts_with("ag_"))
         return fail(token, fmt::format("'{}': names that begin with 'ag_' belong to the engine", token.text));
@@ -72,6 +72,7 @@ class ShaderScanner {
     }
     out_.includes = std::move(directives.includes);
     out_.edits = std::move(directives.edits);
+    for (const auto& [begin, end] : text.left_out) out_.edits.push_back({begin, end});
     while (at_ < code_.size()) AFTERGLOW_CHECK(declaration());
     if (as_ == ScanAs::stage) AFTERGLOW_CHECK(entry_point());
     for (std::size_t i = 0; i < out_.unset.size(); ++i) {

@@ -4,15 +4,19 @@
 #include <fmt/format.h>
 
 #include "core/ascii.h"
+#include "shader/conditions.h"
 
 namespace afterglow {
 namespace {
 
+/// Within a line.
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
 class Tokenizer {
  public:
-  Tokenizer(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+  Tokenizer(std::string_view text, const std::string& file) : text_(text), file_(file), conditions_(file) {}
 
-  Result<std::vector<Token>> run() {
+  Result<TextTokens> run() {
     if (text_.size() > kMaxShaderBytes)
       return shader_error(file_, 0,
                           fmt::format("the shader has {} bytes; at most {} are read", text_.size(), kMaxShaderBytes));
@@ -21,9 +25,11 @@ class Tokenizer {
       if (tokens_.size() > kMaxTokens)
         return shader_error(file_, line_, fmt::format("the shader has more than {} tokens", kMaxTokens));
     }
+    AFTERGLOW_CHECK(end_directive());
+    AFTERGLOW_CHECK(conditions_.end());
     if (!open_.empty())
       return shader_error(file_, open_.back().line, fmt::format("'{}' is never closed", open_.back().character));
-    return std::move(tokens_);
+    return TextTokens{std::move(tokens_), std::move(left_out_)};
   }
 
  private:
@@ -39,14 +45,15 @@ class Tokenizer {
 
   Result<void> step() {
     if (const auto length = newline_at(at_)) {
+      AFTERGLOW_CHECK(end_directive());
+      if (conditions_.leaves_out()) return leave_out();
       at_ += length;
       ++line_;
-      in_directive_ = false;
       line_is_empty_ = true;
       return {};
     }
     const char c = peek();
-    if (c == ' ' || c == '\t' || c == '\v' || c == '\f') {
+    if (is_space(c)) {
       ++at_;
       return {};
     }
@@ -60,12 +67,69 @@ class Tokenizer {
     if (c == '#' && line_is_empty_) {
       in_directive_ = true;
       ++directive_;
+      directive_begin_ = tokens_.size();
     }
     line_is_empty_ = false;
     if (is_digit(c) || (c == '.' && is_digit(peek(1)))) return number();
     if (is_name_char(c)) return word();
     if (c == '"') return quoted();
     return punctuation();
+  }
+
+  Result<void> end_directive() {
+    if (!in_directive_) return {};
+    in_directive_ = false;
+    const auto first = tokens_.begin() + static_cast<std::ptrdiff_t>(directive_begin_);
+    std::vector<Token> line(first, tokens_.end());
+    const std::size_t begin = line.front().offset, end = line.back().end();
+    const std::size_t word = line.size() > 1 ? line[1].offset : end;
+    AFTERGLOW_TRY(const bool stays, conditions_.line(line));
+    tokens_.erase(first, tokens_.end());
+    if (!stays) {
+      left_out_.emplace_back(begin, end);
+      return {};
+    }
+    if (line.size() > 1 && line[1].offset > word) left_out_.emplace_back(word, line[1].offset);
+    tokens_.insert(tokens_.end(), line.begin(), line.end());
+    return {};
+  }
+
+  /// From the end of a line to the next one that begins, goes on with or ends a group of branches. What stands between
+  /// need not be GLSL.
+  Result<void> leave_out() {
+    const std::size_t begin = at_;
+    bool line_begins = true;
+    while (at_ < text_.size() && !(line_begins && is_of_branches())) {
+      const char c = peek();
+      if (const auto length = newline_at(at_)) {
+        at_ += length;
+        ++line_;
+        line_begins = true;
+      } else if (c == '/' && peek(1) == '/') {
+        AFTERGLOW_CHECK(skip_line_comment());
+      } else if (c == '/' && peek(1) == '*') {
+        AFTERGLOW_CHECK(skip_block_comment());
+      } else if (c == '\\' && newline_at(at_ + 1)) {
+        at_ += 1 + newline_at(at_ + 1);
+        ++line_;
+      } else {
+        line_begins = line_begins && is_space(c);
+        ++at_;
+      }
+    }
+    left_out_.emplace_back(begin, at_);
+    line_is_empty_ = true;
+    return {};
+  }
+
+  bool is_of_branches() const {
+    if (peek() != '#') return false;
+    std::size_t begin = at_ + 1;
+    while (begin < text_.size() && is_space(text_[begin])) ++begin;
+    std::size_t end = begin;
+    while (end < text_.size() && is_name_char(text_[end])) ++end;
+    const std::string_view word = text_.substr(begin, end - begin);
+    return word == "if" || word == "ifdef" || word == "ifndef" || word == "elif" || word == "else" || word == "endif";
   }
 
   Result<void> skip_line_comment() {
@@ -208,11 +272,14 @@ class Tokenizer {
 
   std::string_view text_;
   const std::string& file_;
+  Conditions conditions_;
   std::vector<Token> tokens_;
+  std::vector<std::pair<std::size_t, std::size_t>> left_out_;
   std::vector<Open> open_;
   std::size_t at_ = 0;
   int line_ = 1;
   int directive_ = -1;
+  std::size_t directive_begin_ = 0;  ///< index of its '#'
   bool in_directive_ = false;
   bool line_is_empty_ = true;
   int nested_directive_ = -1;
@@ -234,8 +301,6 @@ Error shader_error(const std::string& file, int line, std::string message) {
   return error;
 }
 
-Result<std::vector<Token>> tokenize(std::string_view text, const std::string& file) {
-  return Tokenizer(text, file).run();
-}
+Result<TextTokens> tokenize(std::string_view text, const std::string& file) { return Tokenizer(text, file).run(); }
 
 }  // namespace afterglow

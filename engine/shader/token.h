@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
@@ -56,10 +57,17 @@ inline constexpr int kMaxNesting = 64;                      ///< of (), [] and {
 inline constexpr int kMaxStatementTokens = 8192;            ///< between semicolons and braces
 inline constexpr int kMaxChain = 64;  ///< `else if` in a row; control words without braces in a row
 
-/// Cuts `text` into tokens; comments and white space are dropped, line continuations joined. `file` is for messages.
+struct TextTokens {
+  std::vector<Token> tokens;
+  std::vector<std::pair<std::size_t, std::size_t>> left_out;  ///< from byte to byte of the text, in order
+};
+
+/// Cuts `text` into tokens; comments and white space are dropped, line continuations joined. So are, as `left_out`,
+/// branches that the file's own preprocessor lines leave out, with those lines (shader/conditions.h). `file` is for
+/// messages.
 /// Errors (script): unbalanced or too deeply nested brackets, unfinished comments, characters that GLSL does not have,
-/// limits.
-Result<std::vector<Token>> tokenize(std::string_view text, const std::string& file);
+/// branches that do not end, limits.
+Result<TextTokens> tokenize(std::string_view text, const std::string& file);
 
 /// An error of kind script at a line of a file.
 Error shader_error(const std::string& file, int line, std::string message);

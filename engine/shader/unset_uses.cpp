@@ -21,9 +21,9 @@ constexpr std::size_t kAtOnce = 64;
 constexpr std::size_t kMostLeaves = 256;
 
 /// What each type is made of.
-class Types {
+class LeafTypes {
  public:
-  explicit Types(const Module& module) {
+  explicit LeafTypes(const Module& module) {
     std::map<std::uint32_t, std::uint32_t> numbers;
     for (const auto& i : module.code) {
       Words elements;
@@ -198,7 +198,7 @@ class Uses {
   }
 
   const std::vector<Instruction>& code_;
-  Types types_;
+  LeafTypes types_;
   std::map<std::uint32_t, std::uint32_t> types_of_;         ///< id → its type
   std::vector<std::uint32_t> homes_;                        ///< the block of each instruction
   std::map<std::uint32_t, std::set<std::uint32_t>> turns_;  ///< header of a loop that turns → its blocks

@@ -37,10 +37,9 @@ class Places {
   }
   Place of(const std::string& name) const {
     for (const auto& [path, text] : texts_) {
-      const auto tokens = tokenize(text, path);
-      if (!tokens) continue;
-      for (std::size_t i = 1; i < tokens->size(); ++i) {
-        const Token &before = (*tokens)[i - 1], &token = (*tokens)[i];
+      const std::vector<Token> tokens = tokens_of(text, path);
+      for (std::size_t i = 1; i < tokens.size(); ++i) {
+        const Token &before = tokens[i - 1], &token = tokens[i];
         const bool declares = (before.is_identifier() && !before.is("return")) || before.is("]") || before.is(",");
         if (declares && token.is_identifier() && token.text == name) return {path, token.line};
       }
@@ -52,12 +51,11 @@ class Places {
     Place place = nowhere();
     std::size_t most = 0;
     for (const auto& [path, text] : texts_) {
-      const auto tokens = tokenize(text, path);
-      if (!tokens) continue;
-      for (std::size_t i = 1; i < tokens->size(); ++i) {
-        if (!(*tokens)[i].is("(") || !(*tokens)[i - 1].is("]")) continue;
-        const std::size_t count = elements(*tokens, i);
-        if (count > most) place = {path, (*tokens)[i].line};
+      const std::vector<Token> tokens = tokens_of(text, path);
+      for (std::size_t i = 1; i < tokens.size(); ++i) {
+        if (!tokens[i].is("(") || !tokens[i - 1].is("]")) continue;
+        const std::size_t count = elements(tokens, i);
+        if (count > most) place = {path, tokens[i].line};
         most = std::max(most, count);
       }
     }
@@ -66,6 +64,10 @@ class Places {
 
  private:
   Place nowhere() const { return {texts_.empty() ? std::string() : texts_.front().first, 0}; }
+  static std::vector<Token> tokens_of(std::string_view text, const std::string& path) {
+    auto out = tokenize(text, path);
+    return out ? std::move(out->tokens) : std::vector<Token>();
+  }
   /// How many stand between the parenthesis at `open` and its other one.
   static std::size_t elements(const std::vector<Token>& tokens, std::size_t open) {
     std::size_t count = 1;

@@ -60,5 +60,11 @@ TEST(HeldDivisors, PackedConstantsAreThoseOfTheFormula) {
               ElementsAre(0x81, 0x7f, 0x40, 0xc0));
 }
 
+TEST(HeldDivisors, HalvesAreRoundedAlikeInConstants) {
+  EXPECT_THAT(pixel_of("vec4 apply(vec4 color) { float zero = color.r - color.r;\n"
+                       "return vec4(round(2.5), round(2.5 + zero), round(-1.5), round(vec2(0.5, -1.5) + zero).y); }"),
+              ElementsAre(2, 2, -2, -2));
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 bool by_prelude(const std::string& text, const std::string& name = "depth") {
-  return read_by_prelude_alone(tokenize(text, "test.glsl").value(), name);
+  return read_by_prelude_alone(tokenize(text, "test.glsl").value().tokens, name);
 }
 
 TEST(StorageReads, OnlyWhatThePreludeReadsAlone) {
