@@ -59,11 +59,16 @@ class Finder {
     blocks_.clear();
     defined_.clear();
     home_.clear();
+    uses_.clear();
     std::size_t end = begin;
     for (std::size_t label = 0; code_[end].op != spv::OpFunctionEnd; ++end) {
       if (code_[end].result != 0) defined_[code_[end].result] = end;
       if (code_[end].op == spv::OpLabel) label = end;
       if (code_[end].result != 0) home_[code_[end].result] = code_[label].result;
+      if (code_[end].op != spv::OpVariable && code_[end].op != spv::OpLoad)
+        for (const auto word : code_[end].ids)
+          if (storage_.contains(code_[end].words[word]))
+            uses_[code_[end].words[word]].push_back({end, code_[label].result});
       if (ends_block(code_[end].op)) blocks_[code_[label].result] = {label, end, {}};
     }
     for (const auto& [label, block] : std::map(blocks_))
@@ -81,8 +86,8 @@ class Finder {
             loops_[outer].blocks.size() < loops_[static_cast<std::size_t>(loop.parent)].blocks.size())
           loop.parent = static_cast<int>(outer);
       }
-      loops_[inner].counting = counting(loops_[inner], begin, end);
-      loops_[inner].most_turns = most_turns(loops_[inner], begin, end);
+      loops_[inner].counting = counting(loops_[inner]);
+      loops_[inner].most_turns = most_turns(loops_[inner]);
     }
   }
 
@@ -105,7 +110,7 @@ class Finder {
     loops_.push_back(std::move(loop));
   }
 
-  std::optional<Counting> counting(const Loop& loop, std::size_t begin, std::size_t end) const {
+  std::optional<Counting> counting(const Loop& loop) const {
     Counting out;
     if (code_[loop.head + 1].op != spv::OpBranch) return std::nullopt;
     const Block& header = blocks_.at(loop.header);
@@ -122,15 +127,14 @@ class Finder {
     if (test_label == next_label || code_[test.end].op != spv::OpBranchConditional || leave[3] != loop.merge ||
         leave[2] == loop.merge || test.from != std::vector{loop.header} || !left_by_test_alone(loop, test_label))
       return std::nullopt;
-    if (!compares(leave[1], test, out) || !steps(loop, next, begin, end, out) || !bound_stays(loop, test, out))
-      return std::nullopt;
+    if (!compares(leave[1], test, out) || !steps(loop, next, out) || !bound_stays(loop, test, out)) return std::nullopt;
     count(blocks_.at(outside[0]), out);
     return out;
   }
 
   /// Of a loop that also ends when a variable that counts from a constant reaches another: `i < 9 && more`, with
   /// breaks.
-  std::optional<std::uint64_t> most_turns(const Loop& loop, std::size_t begin, std::size_t end) const {
+  std::optional<std::uint64_t> most_turns(const Loop& loop) const {
     const Block* before = nullptr;
     for (const auto label : blocks_.at(loop.header).from) {
       if (loop.blocks.contains(label)) continue;
@@ -150,8 +154,7 @@ class Finder {
         continue;
       for (const auto condition : all_true(loop, leave.words[1])) {
         Counting counting;
-        if (!compares(condition, find, counting) ||
-            !steps(loop, blocks_.at(code_[loop.head].words[2]), begin, end, counting))
+        if (!compares(condition, find, counting) || !steps(loop, blocks_.at(code_[loop.head].words[2]), counting))
           continue;
         count(*before, counting);
         if (counting.turns) most = std::min(most.value_or(*counting.turns), *counting.turns);
@@ -231,16 +234,13 @@ class Finder {
   }
 
   /// The one place in the loop that writes the variable adds a constant to it, in the last block.
-  bool steps(const Loop& loop, const Block& next, std::size_t begin, std::size_t end, Counting& out) const {
+  bool steps(const Loop& loop, const Block& next, Counting& out) const {
     if (targets_of(code_[next.end]) != std::vector{loop.header}) return false;
+    const auto uses = uses_.find(out.variable);
+    if (uses == uses_.end()) return false;
     int stores = 0;
-    std::uint32_t label = 0;
-    for (std::size_t at = begin; at < end; ++at) {
+    for (const auto& [at, label] : uses->second) {
       const Instruction& i = code_[at];
-      if (i.op == spv::OpLabel) label = i.result;
-      if (i.op == spv::OpVariable && i.result == out.variable) continue;
-      if (std::ranges::none_of(i.ids, [&](auto word) { return i.words[word] == out.variable; })) continue;
-      if (i.op == spv::OpLoad) continue;
       if (i.op != spv::OpStore || i.words[1] != out.variable || i.words[2] == out.variable) return false;
       if (!loop.blocks.contains(label)) continue;
       const Instruction* sum = within(i.words[2], next);
@@ -356,6 +356,11 @@ class Finder {
   std::map<std::uint32_t, Block> blocks_;         ///< of the function, by label
   std::map<std::uint32_t, std::uint32_t> home_;   ///< in the function: id → label of its block
   std::map<std::uint32_t, std::size_t> defined_;  ///< in the function: id → where
+  struct Use {
+    std::size_t at = 0;
+    std::uint32_t block = 0;
+  };
+  std::map<std::uint32_t, std::vector<Use>> uses_;  ///< in the function: variable → whatever does more than load it
 };
 
 }  // namespace

@@ -65,36 +65,54 @@ struct Range {
   bool continues = false;          ///< turns may end by `continue`
 };
 
-/// Nothing when its turns cannot simply stand one behind the other.
-std::optional<Range> range_of(const Module& module, const Loop& loop) {
+/// Its blocks, when they stand one behind the other, and it has the form that for statements take.
+std::optional<Range> blocks_of(const Module& module, const Loop& loop) {
   const auto& code = module.code;
   Range out{loop.head - 1, loop.head, false};
   if (code[out.begin].op != spv::OpLabel || code[loop.head + 1].op != spv::OpBranch) return std::nullopt;
+  const std::uint32_t next = code[loop.head].words[2];
   std::size_t blocks = 0;
-  std::set<std::uint32_t> made;
+  int ways_to_next = 0;
+  bool chooses = false;
   for (out.end = out.begin; code[out.end].op != spv::OpFunctionEnd; ++out.end) {
     const Instruction& i = code[out.end];
     if (i.op == spv::OpLabel && !loop.blocks.contains(i.result)) break;
     blocks += i.op == spv::OpLabel ? 1 : 0;
-    if (i.result != 0) made.insert(i.result);
-  }
-  if (blocks != loop.blocks.size()) return std::nullopt;
-  const std::uint32_t next = code[loop.head].words[2];
-  int ways_to_next = 0;
-  bool chooses = false;
-  for (std::size_t at = loop.function; code[at].op != spv::OpFunctionEnd; ++at) {
-    const bool inside = at >= out.begin && at < out.end;
-    const Instruction& i = code[at];
-    chooses |= inside && i.op == spv::OpSwitch;
-    if (inside) ways_to_next += static_cast<int>(std::ranges::count(targets_of(i), next));
-    if (at == loop.head || inside || i.op == spv::OpLabel) continue;
-    // The way into the loop is the one thing outside that may name something of it.
-    if (at != loop.counting->entry &&
-        std::ranges::any_of(i.ids, [&](auto word) { return made.contains(i.words[word]); }))
-      return std::nullopt;
+    chooses |= i.op == spv::OpSwitch;
+    ways_to_next += static_cast<int>(std::ranges::count(targets_of(i), next));
   }
   out.continues = ways_to_next > 1;
-  return out.continues && chooses ? std::nullopt : std::optional(out);
+  return blocks != loop.blocks.size() || (out.continues && chooses) ? std::nullopt : std::optional(out);
+}
+
+/// Of loops of one function, none within another: nothing for those whose turns cannot simply stand one behind the
+/// other.
+std::vector<std::optional<Range>> ranges_of(const Module& module, const std::vector<Loop>& loops) {
+  const auto& code = module.code;
+  std::vector<std::optional<Range>> out;
+  std::map<std::uint32_t, std::size_t> made;                // id → index of the loop that makes it
+  std::map<std::size_t, std::optional<std::size_t>> edges;  // from where on code is inside of which loop
+  for (std::size_t n = 0; n < loops.size(); ++n) {
+    out.push_back(blocks_of(module, loops[n]));
+    if (!out[n]) continue;
+    edges.try_emplace(out[n]->end);
+    edges[out[n]->begin] = n;
+    for (std::size_t at = out[n]->begin; at < out[n]->end; ++at)
+      if (code[at].result != 0) made[code[at].result] = n;
+  }
+  if (made.empty()) return out;
+  std::optional<std::size_t> inside;
+  for (std::size_t at = loops.front().function; code[at].op != spv::OpFunctionEnd; ++at) {
+    if (const auto edge = edges.find(at); edge != edges.end()) inside = edge->second;
+    if (code[at].op == spv::OpLabel) continue;
+    for (const auto word : code[at].ids) {
+      const auto owner = made.find(code[at].words[word]);
+      // The way into the loop is the one thing outside that may name something of it.
+      if (owner == made.end() || owner->second == inside || at == loops[owner->second].counting->entry) continue;
+      out[owner->second].reset();
+    }
+  }
+  return out;
 }
 
 class Unroller {
@@ -201,6 +219,7 @@ class Unroller {
 
   bool unroll_all_within(const Loop& outermost, std::uint32_t function) {
     made_ = {outermost.header};
+    made_weight_ = 0;
     for (bool any = true; any;) {
       any = false;
       const Steps steps(module_);
@@ -210,10 +229,10 @@ class Unroller {
         if (!within && made_.contains(loop.header) && is_short(loop) && !steps.within(loop.blocks).empty())
           now.push_back(std::move(loop));
       }
-      for (auto loop = now.rbegin(); loop != now.rend(); ++loop) {  // what stands before keeps its place
-        const auto range = range_of(module_, *loop);
-        if (!range || !is_light(*loop, *range, steps.within(loop->blocks))) return false;
-        unroll(*loop, *range);
+      const auto ranges = ranges_of(module_, now);
+      for (std::size_t n = now.size(); n-- > 0;) {  // what stands before keeps its place
+        if (!ranges[n] || !is_light(now[n], *ranges[n], steps.within(now[n].blocks))) return false;
+        unroll(now[n], *ranges[n]);
         any = true;
       }
       if (any) know_whole_numbers(module_, place_of(function));
@@ -234,7 +253,9 @@ class Unroller {
       weight = saturated_sum({weight, functions_.weight(module_.code[at])});
     }
     for (const auto& [array, count] : arrays) accesses += count;
-    return weight / kWorthOfAccess < accesses && saturated_product({weight, *loop.counting->turns}) <= kMostTried;
+    // Inner loops that begin at an outer one's number are counted here alone: as often as they stand there by now.
+    made_weight_ = saturated_sum({made_weight_, saturated_product({weight, *loop.counting->turns})});
+    return weight / kWorthOfAccess < accesses && made_weight_ <= kMostTried;
   }
 
   /// Behind it: what is left once the numbers of turns are known.
@@ -346,6 +367,7 @@ class Unroller {
   std::set<std::uint32_t> filters_;                 ///< functions with the loops over the taps of filters, which stay
   std::map<std::uint32_t, std::uint32_t> origins_;  ///< header → which of the loops before
   std::map<std::uint32_t, std::vector<std::uint32_t>> copies_;  ///< of what is gone
+  std::uint64_t made_weight_ = 0;                               ///< of all that this trial put in place of loops
   Labels tried_, made_;                                         ///< headers; blocks of the loop that is being unrolled
 };
 
