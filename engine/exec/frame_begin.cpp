@@ -69,14 +69,15 @@ Result<void> FrameRunner::State::begin(Program& program, const std::map<std::str
     AFTERGLOW_TRY(begun->times.upload, upload(program, host, choose.look));
     return launch(program, timing, choose);
   };
-  auto done = all();
+  auto done = without_exceptions(all);
   return done ? std::move(done) : given_up(std::move(done));
 }
 
 /// Begins a frame whose pixels another thread converts meanwhile.
 Result<void> FrameRunner::State::begin_packing(Program& program, const std::map<std::string, HostImage>& host,
                                                const Choose& choose) {
-  if (auto prepared = prepare(program, host); !prepared) return given_up(std::move(prepared));
+  if (auto prepared = without_exceptions([&] { return prepare(program, host); }); !prepared)
+    return given_up(std::move(prepared));
   packing.emplace(&program, host, choose);
   const auto pack = [this, &program, &own = packing->host, look = choose.look] {
     return without_exceptions([&] { return upload(program, own, look); });
@@ -102,7 +103,7 @@ void FrameRunner::State::launch_packed() {
   auto done = without_exceptions(all);
   if (done) return;
   (void)submitter.wait();
-  (void)images.staging.wait();
+  forget_result();
   begun->submitted.reset();
   begun->failed = std::move(done).error();
 }
@@ -110,9 +111,16 @@ void FrameRunner::State::launch_packed() {
 /// Nothing may be on its way between images that are made anew.
 Result<void> FrameRunner::State::given_up(Result<void> failed) {
   (void)submitter.wait();
-  (void)images.staging.wait();
+  forget_result();
   begun.reset();
   return failed;
+}
+
+/// Of a frame that failed: parts of it may be on their way back, and the image be left as they found it.
+void FrameRunner::State::forget_result() {
+  (void)images.staging.wait();
+  images.result.set_writer(0);
+  shown.reset();
 }
 
 }  // namespace afterglow

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "core/exception.h"
 #include "exec/frame_runner_state.h"
 
 namespace afterglow {
@@ -22,10 +23,21 @@ bool makes_result(const Program& program, const std::vector<bool>& run) {
 
 }  // namespace
 
+/// Layouts are those behind what was submitted: when that fails, those before it.
+Result<void> FrameRunner::State::submit(const std::function<void(VkCommandBuffer)>& record, int which) {
+  const std::vector<VkImageLayout> layouts = images.inputs.layouts();
+  const VkImageLayout layout = images.result.image().layout;
+  auto done = without_exceptions([&] { return submitter.submit(record, which); });
+  if (done) return done;
+  images.inputs.set_layouts(layouts);
+  images.result.set_layout(layout);
+  return done;
+}
+
 /// What is otherwise done after the kernels, when none has run.
 Result<void> FrameRunner::State::leave_readable() {
   if (images.inputs.readable()) return {};
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { images.inputs.after(commands); }, kOneOff));
+  AFTERGLOW_CHECK(submit([&](VkCommandBuffer commands) { images.inputs.after(commands); }, kOneOff));
   return submitter.wait();
 }
 
@@ -59,7 +71,7 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
   last.reset();
   begun->submitted = Clock::now();
   auto submitted = known ? submitter.submit_again(which)
-                         : submitter.submit(
+                         : submit(
                                [&](VkCommandBuffer commands) {
                                  images.inputs.before(program, commands);
                                  if (draws_result) images.result.before(commands);
@@ -87,8 +99,8 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     if (!run[i]) continue;
     const auto begin = Clock::now();
-    auto done = submitter.submit(
-        [&](VkCommandBuffer commands) { program.record_again(commands, i, VK_NULL_HANDLE, place); }, kOneOff);
+    auto done =
+        submit([&](VkCommandBuffer commands) { program.record_again(commands, i, VK_NULL_HANDLE, place); }, kOneOff);
     if (done) done = submitter.wait();
     if (!done) {
       Error error = std::move(done).error();
@@ -97,7 +109,7 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
     }
     begun->times.kernels.push_back({kernels[i].name, milliseconds_since(begin)});
   }
-  AFTERGLOW_CHECK(submitter.submit(
+  AFTERGLOW_CHECK(submit(
       [&](VkCommandBuffer commands) {
         images.inputs.after(commands);
         if (makes_result(program, run)) images.result.after(commands);
@@ -111,7 +123,7 @@ Result<void> FrameRunner::State::wait() {
   launch_packed();
   if (Program* const warmed = std::exchange(warming_up, nullptr)) {
     AFTERGLOW_CHECK(submitter.wait());
-    warmed->forget_runaways();  // it read images that nobody had filled
+    AFTERGLOW_CHECK(warmed->forget_runaways());  // it read images that nobody had filled
   }
   if (!begun) return {};
   if (!begun->submitted) return begun->failed ? Result<void>(*begun->failed) : Result<void>();
@@ -149,7 +161,7 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
     AFTERGLOW_TRY(queries, s.timer.queries(2));
   }
   const auto start = Clock::now();
-  AFTERGLOW_CHECK(s.submitter.submit(
+  AFTERGLOW_CHECK(s.submit(
       [&](VkCommandBuffer commands) {
         s.images.inputs.before(program, commands);
         if (draws_result) s.images.result.before(commands);

@@ -43,7 +43,7 @@ Result<std::uint64_t> write_pixels(Staging& staging, FrameImage& image, const Ho
   }
   const auto clamped = over_rows(part.height, image.image.row_pitch(),
                                  [&](int y) { return pack(part.y + y, image.image.row(part.y + y)); });
-  image.image.memory().flush();
+  AFTERGLOW_CHECK(image.image.memory().flush());
   return clamped;
 }
 
@@ -101,6 +101,11 @@ std::vector<VkImageLayout> FrameInputs::layouts() const {
   std::vector<VkImageLayout> out;
   for (const auto& [name, image] : images_) out.push_back(image.layout);
   return out;
+}
+
+void FrameInputs::set_layouts(const std::vector<VkImageLayout>& layouts) {
+  auto layout = layouts.begin();
+  for (auto& [name, image] : images_) image.layout = *layout++;
 }
 
 Program::InputVersions FrameInputs::versions() const {

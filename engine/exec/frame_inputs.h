@@ -45,6 +45,8 @@ class FrameInputs {
   /// New images are not, until `after` was recorded.
   bool readable() const;
   std::vector<VkImageLayout> layouts() const;  ///< as commands that were recorded leave them
+  /// Puts back what `layouts` gave: what was recorded since is not submitted.
+  void set_layouts(const std::vector<VkImageLayout>& layouts);
   int made() const { return made_; }           ///< images so far
 
  private:

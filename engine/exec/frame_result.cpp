@@ -71,7 +71,7 @@ Result<std::uint64_t> FrameResult::over_rows_of(Staging& staging, const Rect& pa
     return y < part.y || y >= part.y + part.height ? 0 : row(y, from + left);
   };
   if (!image_.direct) return staging.download(staged(image_), image_.layout, inside, part.y, part.y + part.height);
-  image_.image.memory().invalidate();
+  AFTERGLOW_CHECK(image_.image.memory().invalidate());
   return over_rows(part.height, image_.image.row_pitch(),
                    [&](int y) { return row(part.y + y, image_.image.row(part.y + y) + left); });
 }

@@ -26,6 +26,8 @@ class FrameResult {
   /// Id of the program whose last run the image holds; 0: none.
   std::uint64_t writer() const { return image_.writer; }
   void set_writer(std::uint64_t program) { image_.writer = program; }
+  /// Puts back what the image had: what was recorded since is not submitted.
+  void set_layout(VkImageLayout layout) { image_.layout = layout; }
 
   /// Every VkImage of it: itself and its targets by rows.
   std::vector<VkImage> images() const;

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "core/exception.h"
 #include "exec/convert.h"
 #include "exec/frame_runner_state.h"
 #include "exec/host_input.h"
@@ -26,7 +27,7 @@ Result<void> FrameRunner::begin(Program& program, const std::map<std::string, Ho
   State& s = *state_;
   if (s.images.whole_staging() && timing == KernelTiming::none) return s.begin_packing(program, inputs, choose);
   AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
-  auto read_back = s.begin_download();
+  auto read_back = without_exceptions([&] { return s.begin_download(); });
   return read_back ? std::move(read_back) : s.given_up(std::move(read_back));
 }
 
@@ -40,7 +41,7 @@ Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
   s.bound.reset();
   s.images.result.set_writer(0);
   AFTERGLOW_CHECK(program.bind(s.images.inputs.bindings(), binding_of(s.images.result.image()), s.place));
-  AFTERGLOW_CHECK(s.submitter.submit(
+  AFTERGLOW_CHECK(s.submit(
       [&](VkCommandBuffer commands) {
         s.images.inputs.before(program, commands);
         s.images.result.before(commands);
@@ -69,7 +70,7 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
   const HostImage source = s.begun->source;
   auto ended = s.end();
   if (!ended) {
-    (void)s.images.staging.wait();  // a download may be on its way
+    s.forget_result();
     return std::move(ended).error();
   }
   FrameTimes times = std::move(*ended);
@@ -80,9 +81,13 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
     return times;
   }
   const auto start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held, s.images.result.download(s.images.staging, *s.shown, out, s.flags));
+  auto held = without_exceptions([&] { return s.images.result.download(s.images.staging, *s.shown, out, s.flags); });
   s.begun.reset();
-  out.clamped += held;
+  if (!held) {
+    s.forget_result();
+    return std::move(held).error();
+  }
+  out.clamped += *held;
   times.readback = milliseconds_since(start);
   return times;
 }
@@ -124,8 +129,13 @@ DeviceImages FrameRunner::images() const { return state_->images.on_device(state
 
 Result<void> FrameRunner::read_result(HostResult& out, const std::optional<Rect>& part) {
   if (!state_->shown) return Error{ErrorKind::other, "no frame was run, there is no result to read"};
-  AFTERGLOW_TRY(out.clamped,
-                state_->images.result.download(state_->images.staging, part.value_or(*state_->shown), out));
+  auto held = without_exceptions(
+      [&] { return state_->images.result.download(state_->images.staging, part.value_or(*state_->shown), out); });
+  if (!held) {
+    state_->forget_result();
+    return std::move(held).error();
+  }
+  out.clamped = *held;
   return {};
 }
 

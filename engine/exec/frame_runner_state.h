@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a FrameRunner is made of. A frame is begun (frame_begin.cpp), run and waited for (frame_execute.cpp), and read back
-// (frame_runner.cpp).
+// What a FrameRunner is made of. A frame is begun (frame_begin.cpp), run and waited for (frame_execute.cpp), and read
+// back (frame_runner.cpp).
 #pragma once
 
 #include <array>
@@ -74,6 +74,7 @@ struct FrameRunner::State {
   };
   std::optional<Packing> packing;  // last: its thread uses the others
 
+  Result<void> submit(const std::function<void(VkCommandBuffer)>& record, int which);
   Result<void> leave_readable();
   Result<void> begin(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
                      const Choose& choose);
@@ -84,6 +85,7 @@ struct FrameRunner::State {
   Result<double> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
   Result<void> launch(Program& program, KernelTiming timing, const Choose& choose);
   Result<void> given_up(Result<void> failed);
+  void forget_result();
   Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing);
   Result<void> time_separately(Program& program, const std::vector<bool>& run);
   Result<void> wait();

@@ -41,11 +41,12 @@ Result<IdlePrograms::Choice> IdlePrograms::choose(Device& device, ShaderLibrary&
   return Choice{variant.whole ? &whole : variant.program.get(), &variant.skipped};
 }
 
-void IdlePrograms::set_parameters(const Graph& graph) {
+Result<void> IdlePrograms::set_parameters(const Graph& graph) {
   for (auto& [key, variant] : variants_) {
-    if (variant.program) variant.program->set_parameters(graph_of(graph, key));
+    if (variant.program) AFTERGLOW_CHECK(variant.program->set_parameters(graph_of(graph, key)));
     variant.skipped = skipped_by(graph, key);
   }
+  return {};
 }
 
 Program* IdlePrograms::program(std::uint64_t id) const {

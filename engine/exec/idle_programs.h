@@ -26,7 +26,7 @@ class IdlePrograms {
   Result<Choice> choose(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler, Program& whole,
                         const Graph& graph, const ProgramOptions& options, const SourceContent& content);
   /// See Program::set_parameters. Limits of `graph` count from here on.
-  void set_parameters(const Graph& graph);
+  Result<void> set_parameters(const Graph& graph);
   /// See Program::use.
   Result<void> use(const std::shared_ptr<Histories>& histories);
   /// The program of that number here; null when there is none.

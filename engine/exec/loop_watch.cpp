@@ -22,7 +22,7 @@ Result<LoopWatch> LoopWatch::create(const Device& device, const Plan& plan,
   AFTERGLOW_TRY(out.buffer_,
                 Buffer::create(device, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, HostAccess::read, "loops"));
   std::memset(out.buffer_.data(), 0, size);
-  out.buffer_.memory().flush();
+  AFTERGLOW_CHECK(out.buffer_.memory().flush());
   return out;
 }
 
@@ -37,9 +37,9 @@ void LoopWatch::record(const Device& device, VkCommandBuffer commands) const {
                  VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
-void LoopWatch::look() {
-  if (buffer_.size() == 0) return;
-  buffer_.memory().invalidate();
+Result<void> LoopWatch::look() {
+  if (buffer_.size() == 0) return {};
+  AFTERGLOW_CHECK(buffer_.memory().invalidate());
   bool any = false;
   for (std::size_t i = kernels_.size(); i-- > 0;) {
     if (kernels_[i].loops.empty()) continue;
@@ -50,10 +50,11 @@ void LoopWatch::look() {
     last_ = i;
     told_ = word;
   }
-  if (!any) return;
+  if (!any) return {};
   ++runaways_;
   std::memset(buffer_.data(), 0, buffer_.size());
-  buffer_.memory().flush();
+  AFTERGLOW_CHECK(buffer_.memory().flush());
+  return {};
 }
 
 Error LoopWatch::error() const {

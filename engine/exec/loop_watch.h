@@ -25,7 +25,7 @@ class LoopWatch {
   void record(const Device& device, VkCommandBuffer commands) const;
   /// Notes a loop that has run away since it was called last, and lets all loops turn again. To be called when a run is
   /// over.
-  void look();
+  Result<void> look();
   std::uint64_t runaways() const { return runaways_; }
   /// About the loop that ran away last: script.
   Error error() const;

@@ -63,13 +63,13 @@ Result<ParameterBuffer> ParameterBuffer::create(const Device& device, const Grap
                   Buffer::create(device, size, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "parameters"));
     std::memset(out.buffer_.data(), 0, size);
     out.values_.resize(size);
-    out.write(graph);
+    AFTERGLOW_CHECK(out.write(graph));
   }
   return out;
 }
 
-void ParameterBuffer::write(const Graph& graph) {
-  if (values_.empty()) return;
+Result<void> ParameterBuffer::write(const Graph& graph) {
+  if (values_.empty()) return {};
   for (const KernelBlock& block : blocks_) {
     for (const auto& param : block.compiled->params) {
       const Pass& pass = pass_of_stage(graph, block.kernel, param.stage);
@@ -79,7 +79,7 @@ void ParameterBuffer::write(const Graph& graph) {
     }
   }
   std::memcpy(buffer_.data(), values_.data(), values_.size());
-  buffer_.memory().flush();
+  return buffer_.memory().flush();
 }
 
 std::string_view ParameterBuffer::bytes(std::size_t kernel) const {

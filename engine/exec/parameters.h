@@ -26,7 +26,7 @@ class ParameterBuffer {
   ParameterBuffer() = default;
 
   /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone.
-  void write(const Graph& graph);
+  Result<void> write(const Graph& graph);
   /// The block of a kernel as the buffer holds it.
   std::string_view bytes(std::size_t kernel) const;
 

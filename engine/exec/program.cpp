@@ -58,10 +58,11 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   return std::unique_ptr<Program>(new Program(std::move(state)));
 }
 
-void Program::set_parameters(const Graph& graph) {
-  if (!same_structure(state_->graph, graph)) return;
-  state_->parameters.write(graph);
+Result<void> Program::set_parameters(const Graph& graph) {
+  if (!same_structure(state_->graph, graph)) return {};
+  AFTERGLOW_CHECK(state_->parameters.write(graph));
   state_->graph.histories = graph.histories;  // values of first frames
+  return {};
 }
 
 bool Program::has_previous(const std::string& history) const {

@@ -89,8 +89,8 @@ class Program {
 
   /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched. A graph of
   /// another structure (`same_structure`) is ignored: it needs a program of its own. Must not be called while a
-  /// submission of this program is in flight.
-  void set_parameters(const Graph& graph);
+  /// submission of this program is in flight. Errors: device.
+  Result<void> set_parameters(const Graph& graph);
 
   /// By name of an input ("source", "depth", …): a number that no other pixels of it ever had, in this process.
   using InputVersions = std::map<std::string, std::uint64_t>;
@@ -122,7 +122,7 @@ class Program {
   Result<void> check_loops(std::uint64_t since);
 
   /// Of a run that is over and that nobody wants: lets its loops turn again.
-  void forget_runaways();
+  Result<void> forget_runaways();
 
   /// Tells programs apart for as long as the process lives.
   std::uint64_t id() const;

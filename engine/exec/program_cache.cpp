@@ -260,8 +260,8 @@ Result<void> ProgramCache::begin() {
   State::Entry& entry = s.entries.front();
   const FrameWork& work = entry.work;
   if (entry.program) AFTERGLOW_CHECK(s.use_histories(entry));
-  if (!s.fresh && entry.program) entry.program->set_parameters(s.graph_of_program(work.graph));
-  if (!s.fresh) entry.idle.set_parameters(work.graph);
+  if (!s.fresh && entry.program) AFTERGLOW_CHECK(entry.program->set_parameters(s.graph_of_program(work.graph)));
+  if (!s.fresh) AFTERGLOW_CHECK(entry.idle.set_parameters(work.graph));
   s.drop_spares();
   if (work.runs())
     s.histories->begin(work.frame, work.step, work.restart);

@@ -74,11 +74,12 @@ Result<void> Program::State::use(std::shared_ptr<Histories> given) {
         image->desc().format != image_format(history.next))
       return Error{ErrorKind::other, fmt::format("there are no images for the history '{}'", history.name)};
   }
+  history_images = 0;  // of none, until all that follows is done: what is left of it by an exception is done again
+  ++uses;
   histories = std::move(given);
-  history_images = histories->images_id();
   for (const Place& place : places) show_histories(place);
   make_commands();
-  ++uses;
+  history_images = histories->images_id();
   return {};
 }
 

@@ -81,14 +81,14 @@ std::uint64_t Program::runaways() const { return state_->loops.runaways(); }
 
 Result<void> Program::check_loops(std::uint64_t since) {
   State& s = *state_;
-  s.loops.look();
+  AFTERGLOW_CHECK(s.loops.look());
   if (s.loops.runaways() == since) return {};
   for (std::size_t i = 0; i < s.plan.kernels.size(); ++i) s.holds(i).reset();
   if (s.histories) s.histories->reset();
   return s.loops.error();
 }
 
-void Program::forget_runaways() { state_->loops.look(); }
+Result<void> Program::forget_runaways() { return state_->loops.look(); }
 
 std::vector<bool> Program::begin_run(const InputVersions& inputs, bool result_lost) {
   State& s = *state_;

@@ -73,13 +73,15 @@ Result<void> Staging::prepare(Bands& bands, std::size_t first, const StagedImage
 }
 
 Result<void> Staging::wait() {
+  Result<void> done;
   for (auto* bands : {&uploads_, &downloads_})
     for (auto& band : *bands) {
-      AFTERGLOW_CHECK(band.submitter.wait());
+      auto waited = band.submitter.wait();
+      if (done && !waited) done = std::move(waited);
       band.rows = 0;
     }
   begun_ = false;
-  return {};
+  return done;
 }
 
 Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& pack) {
@@ -96,7 +98,7 @@ Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& p
     AFTERGLOW_CHECK(band.submitter.wait());
     held += over_rows(rows, row_bytes(image),
                       [&](int y) { return pack(first + y, band.buffer.data() + y * row_bytes(image)); });
-    band.buffer.memory().flush();
+    AFTERGLOW_CHECK(band.buffer.memory().flush());
     const bool is_first = first == 0, is_last = first + rows == image.size.height;
     AFTERGLOW_CHECK(band.submitter.submit([&](VkCommandBuffer commands) {
       if (is_first) {
@@ -160,7 +162,7 @@ Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout 
   const auto take = [&](Band& band) -> Result<void> {
     if (band.rows == 0) return {};
     AFTERGLOW_CHECK(band.submitter.wait());
-    band.buffer.memory().invalidate();
+    AFTERGLOW_CHECK(band.buffer.memory().invalidate());
     held += over_rows(band.rows, row_bytes(image),
                       [&](int y) { return unpack(band.first_row + y, band.buffer.data() + y * row_bytes(image)); });
     band.rows = 0;

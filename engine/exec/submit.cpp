@@ -49,7 +49,12 @@ Result<void> Submitter::record(const std::function<void(VkCommandBuffer)>& recor
   AFTERGLOW_CHECK(wait());
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   AFTERGLOW_VK(device_->vk().vkBeginCommandBuffer(commands, &begin), "cannot record commands");
-  record(commands);
+  try {
+    record(commands);
+  } catch (...) {
+    device_->vk().vkEndCommandBuffer(commands);  // one that is being recorded may not begin again
+    throw;
+  }
   AFTERGLOW_VK(device_->vk().vkEndCommandBuffer(commands), "cannot record commands");
   ++recordings_;
   return {};
@@ -61,21 +66,19 @@ Result<void> Submitter::submit_again(int which) {
                                          .commandBuffer = commands_[static_cast<std::size_t>(which)]};
   const VkSubmitInfo2 info{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
+  // Here, not behind the wait: a submission with a fence that could not be reset would seem to be over at once.
+  const VkFence fence = fence_.get();
+  AFTERGLOW_VK(device_->vk().vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
   const auto lock = device_->lock_queue();
-  AFTERGLOW_VK(device_->vk().vkQueueSubmit2(device_->queue(), 1, &info, fence_.get()), "cannot submit");
+  AFTERGLOW_VK(device_->vk().vkQueueSubmit2(device_->queue(), 1, &info, fence), "cannot submit");
   pending_ = true;
   return {};
 }
 
 Result<void> Submitter::wait() {
   if (!pending_) return {};
-  const VkFence fence = fence_.get();
   pending_ = false;
-  const VkResult waited = wait_for_fence(*device_, fence);
-  // The device is idle even where the wait failed: the next submission needs its fence unsignalled.
-  if (waited != VK_ERROR_DEVICE_LOST)
-    AFTERGLOW_VK(device_->vk().vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
-  AFTERGLOW_VK(waited, "the device did not finish");
+  AFTERGLOW_VK(wait_for_fence(*device_, fence_.get()), "the device did not finish");
   return {};
 }
 

@@ -101,18 +101,22 @@ Result<Memory> Memory::allocate(const Device& device, const VkMemoryRequirements
   return out;
 }
 
-void Memory::flush() const {
-  if (coherent_ || !mapped_) return;
+Result<void> Memory::flush() const {
+  if (coherent_ || !mapped_) return {};
   const VkMappedMemoryRange range{
       .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .size = VK_WHOLE_SIZE};
-  device_->vk().vkFlushMappedMemoryRanges(device_->handle(), 1, &range);
+  AFTERGLOW_VK(device_->vk().vkFlushMappedMemoryRanges(device_->handle(), 1, &range),
+               "cannot bring memory to the device");
+  return {};
 }
 
-void Memory::invalidate() const {
-  if (coherent_ || !mapped_) return;
+Result<void> Memory::invalidate() const {
+  if (coherent_ || !mapped_) return {};
   const VkMappedMemoryRange range{
       .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .size = VK_WHOLE_SIZE};
-  device_->vk().vkInvalidateMappedMemoryRanges(device_->handle(), 1, &range);
+  AFTERGLOW_VK(device_->vk().vkInvalidateMappedMemoryRanges(device_->handle(), 1, &range),
+               "cannot bring memory back from the device");
+  return {};
 }
 
 Result<Buffer> Buffer::create(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage, HostAccess access,

@@ -31,9 +31,9 @@ class Memory {
   VkDeviceSize size() const { return size_; }
   std::byte* data() const { return mapped_; }
   /// Makes CPU writes visible to the device before a submission; device writes visible to the CPU after a wait.
-  /// Nothing on coherent memory.
-  void flush() const;
-  void invalidate() const;
+  /// Nothing on coherent memory. Errors: device.
+  Result<void> flush() const;
+  Result<void> invalidate() const;
 
  private:
   const Device* device_ = nullptr;

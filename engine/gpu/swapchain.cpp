@@ -332,9 +332,13 @@ Result<void> Swapchain::wait(Slot& slot) {
 }
 
 Result<void> Swapchain::finish() {
-  for (Slot& slot : slots_) AFTERGLOW_CHECK(wait(slot));
+  Result<void> done;
+  for (Slot& slot : slots_) {
+    auto waited = wait(slot);
+    if (done && !waited) done = std::move(waited);
+  }
   release();
-  return {};
+  return done;
 }
 
 void Swapchain::retire(std::shared_ptr<void> object) {
@@ -350,11 +354,12 @@ void Swapchain::retire_chain() {
 
 /// Waits for everything on the queue, presentations too as far as Vulkan 1.3 can, and destroys all that was retired.
 Result<void> Swapchain::drain() {
-  {
+  const VkResult idle = [&] {
     const auto lock = device_.lock_queue();
-    AFTERGLOW_VK(device_.vk().vkQueueWaitIdle(device_.queue()), "the device did not finish");
-  }
-  AFTERGLOW_CHECK(finish());
+    return device_.vk().vkQueueWaitIdle(device_.queue());
+  }();
+  AFTERGLOW_CHECK(finish());  // of frames more is known than of the queue
+  AFTERGLOW_VK(idle, "the device did not finish");
   proven_chain_ = chain_number_ + (chain_ ? 0 : 1);
   release();
   return {};

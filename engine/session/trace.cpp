@@ -127,8 +127,7 @@ Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std
     AFTERGLOW_TRY(renderer, Renderer::create(device, {.max_memory = max_memory}));
   }
   if (reusable) {
-    program->set_parameters(guarded.graph);
-    return {};
+    return program->set_parameters(guarded.graph);
   }
   program.reset();
   AFTERGLOW_TRY(program, stack.programs()->by_passes(guarded.graph, part, stack.shaders()));

@@ -59,8 +59,8 @@ Result<void> PaintCheck::end(const Device& device, VkCommandBuffer commands, con
 }
 
 Result<void> PaintCheck::compare() {
-  parts_pixels_.memory().invalidate();
-  whole_pixels_.memory().invalidate();
+  AFTERGLOW_CHECK(parts_pixels_.memory().invalidate());
+  AFTERGLOW_CHECK(whole_pixels_.memory().invalidate());
   const std::byte* parts = parts_pixels_.data();
   const std::byte* whole = whole_pixels_.data();
   const auto row = static_cast<std::size_t>(size_.width) * 4;

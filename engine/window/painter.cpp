@@ -176,7 +176,7 @@ Result<std::filesystem::path> Painter::write_capture(const Buffer& pixels, Size 
   const std::filesystem::path file = std::exchange(capture_, {});
   if (size.area() == 0) return Error{ErrorKind::device, "the images of this window cannot be read", file.string()};
   AFTERGLOW_CHECK(swapchain_->finish());
-  pixels.memory().invalidate();
+  AFTERGLOW_CHECK(pixels.memory().invalidate());
   const auto order = *code_order(swapchain_->format());
   Picture picture;
   picture.color = Image(size.width, size.height, 4);

@@ -43,7 +43,7 @@ Result<bool> PlainPass::record(VkCommandBuffer commands, VkImage target) {
          .imageExtent = {static_cast<std::uint32_t>(pixels.width), static_cast<std::uint32_t>(pixels.height), 1}});
     at += static_cast<std::size_t>(pixels.size().area()) * 4;
   }
-  codes.memory().flush();
+  AFTERGLOW_CHECK(codes.memory().flush());
   const auto into =
       image_barrier(target, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,

@@ -64,7 +64,7 @@ Result<void> UiRenderer::take_fonts() {
   AFTERGLOW_TRY(staging_,
                 Buffer::create(device_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, HostAccess::write, "glyphs"));
   std::memcpy(staging_.data(), pixels, bytes);
-  staging_.memory().flush();
+  AFTERGLOW_CHECK(staging_.memory().flush());
   AFTERGLOW_TRY(atlas_,
                 GpuImage::create(device_, {.name = "glyphs",
                                            .size = size,
@@ -130,7 +130,7 @@ Result<void> UiRenderer::upload_parts(VkCommandBuffer commands, Slot& slot, std:
               (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(part.x)) * 4,
           row);
   }
-  slot.parts.memory().flush();
+  AFTERGLOW_CHECK(slot.parts.memory().flush());
   copy_to_atlas(commands, slot.parts.get(), copies, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   return {};
 }
@@ -160,8 +160,8 @@ Result<void> UiRenderer::prepare(VkCommandBuffer commands, std::size_t slot_inde
     vertices += vertex_bytes;
   }
   std::memcpy(slot.indices.data(), indices_.data(), indices_.size() * sizeof(ImDrawIdx));
-  slot.vertices.memory().flush();
-  slot.indices.memory().flush();
+  AFTERGLOW_CHECK(slot.vertices.memory().flush());
+  AFTERGLOW_CHECK(slot.indices.memory().flush());
   return {};
 }
 

@@ -12,7 +12,7 @@ Result<void> ViewTable::take(const Device& device, const DisplayTable& table) {
   AFTERGLOW_TRY(staging_,
                 Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, HostAccess::write, "display"));
   std::memcpy(staging_.data(), table.codes.data(), bytes);
-  staging_.memory().flush();
+  AFTERGLOW_CHECK(staging_.memory().flush());
   AFTERGLOW_TRY(image_,
                 GpuImage::create(device, {.name = "display",
                                           .size = table.size,

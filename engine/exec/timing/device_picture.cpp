@@ -25,7 +25,7 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
   };
   if (out.direct) {
     over_rows(image.height, out.image.row_pitch(), [&](int y) { return pack(y, out.image.row(y)); });
-    out.image.memory().flush();
+    AFTERGLOW_CHECK(out.image.memory().flush());
   } else {
     Staging staging(device);
     AFTERGLOW_CHECK(staging.upload({out.image.get(), format, image.size()}, pack));
