@@ -89,6 +89,7 @@ static void record_frames(Host *host, afterglow_device *device, const char *pres
                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 
     vkCmdCopyImageToBuffer(commands, result.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, download.buffer, 1, &all);
+    host_make_readable(commands);
     host_submit_and_wait(host, commands);
   }
   memcpy(pixels, download.mapped, SAMPLES * sizeof(float));

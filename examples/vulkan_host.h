@@ -61,5 +61,7 @@ void host_submit_and_wait(Host *host, VkCommandBuffer commands);
 
 /* What has been written before becomes readable by whatever comes behind; the image changes its layout. */
 void host_change_layout(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to);
+/* What copies have written becomes readable by the CPU, once the commands are done: waiting alone does not do that. */
+void host_make_readable(VkCommandBuffer commands);
 
 #endif

@@ -133,7 +133,7 @@ typedef void (*afterglow_wake_callback)(void *user);
 typedef struct afterglow_device_options {
   size_t struct_size;
   afterglow_string device; /* "auto", an index, or a part of a name or uuid; not given: "auto" */
-  bool validate;           /* load the Khronos validation layer; its messages go to `message` */
+  bool validate;           /* load the Khronos validation layer; afterglow_device_describe has its messages */
   /* Compiled shaders and pipelines are kept there; not given: nowhere. One that cannot be written to is a warning. */
   afterglow_string cache_folder;
   afterglow_message_callback message;

@@ -53,6 +53,21 @@ Result<std::unique_ptr<Backend>> Backend::open(std::shared_ptr<SharedDevice> dev
   return out;
 }
 
+/// Calls forget_what_went at the end of a block, by an exception too.
+class Backend::Forgetting {
+ public:
+  explicit Forgetting(Backend& backend) : backend_(&backend), before_(&backend.source_->stack()) {}
+  Forgetting(const Forgetting&) = delete;
+  ~Forgetting() {
+    if (backend_) backend_->forget_what_went(before_);
+  }
+  void dismiss() { backend_ = nullptr; }
+
+ private:
+  Backend* backend_;
+  const Stack* before_;
+};
+
 Result<void> Backend::set(const Override& one) {
   Given all = given_;
   std::erase_if(all.overrides, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
@@ -76,25 +91,20 @@ Result<void> Backend::set_argument(const std::string& name, const std::optional<
 }
 
 Result<void> Backend::set_all(Given all, MustFit must_fit) {
-  const Stack* before = &source_->stack();
+  const Forgetting forgetting(*this);
   auto done = source_->set(all, must_fit);
-  forget_what_went(before);
   if (done) given_ = std::move(all);
   return done;
 }
 
 Result<bool> Backend::update() {
-  const Stack* before = &source_->stack();
-  auto changed = source_->update();
-  forget_what_went(before);
-  return changed;
+  const Forgetting forgetting(*this);
+  return source_->update();
 }
 
 Result<void> Backend::reload(const std::optional<std::string>& text) {
-  const Stack* before = &source_->stack();
-  auto done = source_->reload(text);
-  forget_what_went(before);
-  return done;
+  const Forgetting forgetting(*this);
+  return source_->reload(text);
 }
 
 /// What was prepared goes with its stack (`before`, which may be no more) or its program; a failure alone leaves it.
@@ -107,9 +117,9 @@ void Backend::forget_what_went(const Stack* before) {
 }
 
 Result<void> Backend::prepare(const Shape& shape) {
-  const Stack* before = &source_->stack();
+  Forgetting forgetting(*this);
   auto done = prepare_frame(shape);
-  if (!done) forget_what_went(before);
+  if (done) forgetting.dismiss();
   return done;
 }
 
@@ -136,9 +146,9 @@ Result<void> Backend::prepare_frame(const Shape& shape) {
 }
 
 Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result) {
-  const Stack* before = &source_->stack();
+  Forgetting forgetting(*this);
   auto done = run_frame(shape, inputs, result);
-  if (!done) forget_what_went(before);
+  if (done) forgetting.dismiss();
   return done;
 }
 

@@ -136,6 +136,7 @@ class Backend {
  private:
   Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
   Result<void> set_all(Given all, MustFit must_fit);
+  class Forgetting;
   void forget_what_went(const Stack* before);
   Result<std::shared_ptr<const Build>> evaluate(const Shape& shape);
   Result<void> prepare_frame(const Shape& shape);

@@ -28,7 +28,10 @@ Result<void> check_image(const char* name, const afterglow_vulkan_image& image, 
   const auto fail = [&](const char* what) { return usage(fmt::format("afterglow_bindings: {} {}", name, what)); };
   if (image.format == VK_FORMAT_UNDEFINED) return fail("has the format VK_FORMAT_UNDEFINED");
   if (is_of_integers(image.format)) return fail("has a format of integers; allowed: what shaders read as floats");
-  if (image.view == result.view) return fail("is the image of the result, which cannot be read meanwhile");
+  if (vk::planeCount(static_cast<vk::Format>(image.format)) > 1)
+    return fail("has a format of several planes; allowed: what shaders read without a conversion");
+  if (image.image == result.image || image.view == result.view)
+    return fail("is the image of the result, which cannot be read meanwhile");
   return {};
 }
 

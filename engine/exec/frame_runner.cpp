@@ -118,7 +118,9 @@ Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<s
     AFTERGLOW_TRY(times, s.end());
   } else {
     s.shown.reset();
-    AFTERGLOW_TRY(times.upload, s.images.bring_source(inputs));
+    auto brought = without_exceptions([&] { return s.images.bring_source(inputs); });
+    if (!brought) return s.given_up(std::move(brought).error()).error();
+    times.upload = *brought;
   }
   s.begun.reset();
   if (!ran) AFTERGLOW_CHECK(s.leave_readable());
@@ -153,9 +155,15 @@ Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
   const auto unpack = [&, w = width](int y, const std::byte* from) {
     return unpack_row(from, found->binding.format, w, out.pixels.data() + static_cast<std::ptrdiff_t>(y) * w * 4);
   };
-  AFTERGLOW_TRY(out.clamped,
-                state_->images.staging.download({found->binding.image, found->binding.format, found->binding.size},
-                                                found->layout, unpack));
+  Staging& staging = state_->images.staging;
+  auto held = without_exceptions([&] {
+    return staging.download({found->binding.image, found->binding.format, found->binding.size}, found->layout, unpack);
+  });
+  if (!held) {
+    (void)staging.wait();
+    return std::move(held).error();
+  }
+  out.clamped = *held;
   return out;
 }
 

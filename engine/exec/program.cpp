@@ -100,6 +100,17 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   };
   AFTERGLOW_CHECK(add("source", s.graph.source));
   for (const auto& [name, id] : s.graph.auxiliary) AFTERGLOW_CHECK(add(name, id));
+  // Images of hosts have formats of their own.
+  for (std::size_t kernel = 0; kernel < s.images.size(); ++kernel)
+    for (std::size_t slot = 0; slot < s.images[kernel].size(); ++slot) {
+      const auto found = bound.find(s.images[kernel][slot]);
+      if (found != bound.end() && s.interpolates(kernel, slot) &&
+          !supports(s.device, found->second.format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT))
+        return fail(
+            fmt::format("'{}' has a format between whose pixels this device cannot interpolate, as {} does with "
+                        "this allowed error",
+                        s.graph.images[found->first].name, s.plan.kernels[kernel].name));
+    }
   AFTERGLOW_CHECK(s.data.fill(s.device, s.graph));
   while (s.places.size() <= static_cast<std::size_t>(place)) AFTERGLOW_CHECK(s.make_place());
   State::Place& at = s.places[static_cast<std::size_t>(place)];

@@ -241,12 +241,17 @@ Result<void> ProgramCache::find(FrameWork work, ShaderLibrary& shaders) {
   const auto found = s.found(work);
   s.fresh = found == s.entries.end();
   if (s.fresh) {
-    auto made = s.make(std::move(work), shaders);
-    if (!made) {
-      s.entries.pop_front();
-      s.present = false;
+    const auto drop = [&s] {  // an entry without a program would be one that runs nothing
+      if (std::exchange(s.present, false)) s.entries.pop_front();
+    };
+    try {
+      auto made = s.make(std::move(work), shaders);
+      if (!made) drop();
+      return made;
+    } catch (...) {
+      drop();
+      throw;
     }
-    return made;
   }
   if (found != s.entries.begin()) s.entries.splice(s.entries.begin(), s.entries, found);
   s.entries.front().work = std::move(work);

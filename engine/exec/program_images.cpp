@@ -16,7 +16,8 @@ void Program::State::write_set(const Place& place, int which, const Look& look) 
       Seen seen = look(images[i][slot]);
       if (images[i][slot] == plan.kernels[i].output) seen.layout = VK_IMAGE_LAYOUT_GENERAL;  // it is stored to
       if (seen.view != VK_NULL_HANDLE)
-        place.descriptors.write_image(set_index(which, i), slot, seen.view, seen.layout, sampler.get());
+        place.descriptors.write_image(set_index(which, i), slot, seen.view, seen.layout,
+                                      interpolates(i, slot) ? interpolating.get() : sampler.get());
     }
 }
 

@@ -222,7 +222,10 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
     pointers.push_back(&compiled_of(i));
   }
   AFTERGLOW_TRY(data, DataImages::create(device, graph, options.config.storage_reads));
-  AFTERGLOW_TRY(sampler, create_sampler(device, options.config.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
+  AFTERGLOW_TRY(sampler, create_sampler(device, VK_FILTER_NEAREST));
+  if (options.config.hardware_filter) {
+    AFTERGLOW_TRY(interpolating, create_sampler(device, VK_FILTER_LINEAR));
+  }
   AFTERGLOW_TRY(parameters, ParameterBuffer::create(device, graph, plan, pointers));
   AFTERGLOW_TRY(loops, LoopWatch::create(device, plan, pointers));
   return {};

@@ -46,9 +46,9 @@ struct Program::State {
   LoopWatch loops;
   Arena arena;
   DataImages data;
-  KernelPipelines pipelines;  ///< of compiled.unique
-  GpuImage marks;             ///< for kernels with two draws, as large as the largest of them
-  SamplerHandle sampler;
+  KernelPipelines pipelines;             ///< of compiled.unique
+  GpuImage marks;                        ///< for kernels with two draws, as large as the largest of them
+  SamplerHandle sampler, interpolating;  ///< the second where the device's samplers interpolate, else null
   /// What one frame in flight finds behind its descriptors: see `Program::bind`.
   struct Place {
     Descriptors descriptors;  ///< one set for each SetOf and kernel
@@ -130,6 +130,10 @@ struct Program::State {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   };
   using Look = std::function<Seen(ImageId)>;
+  bool interpolates(std::size_t kernel, std::size_t slot) const {
+    const auto& slots = compiled_of(kernel).images;
+    return slot < slots.size() && slots[slot].interpolated;
+  }
   void write_set(const Place& place, int which, const Look& look) const;
   Seen look_between(ImageId image) const;
   Seen look_at_input(const Place& place, ImageId image) const;

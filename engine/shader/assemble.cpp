@@ -223,6 +223,7 @@ class Assembler {
   Result<void> anchor() {
     if (kernel_.sample) return add_stage(*kernel_.sample, authors_groups_ ? PassKind::compute : PassKind::sample);
     const ImageRead read = add_image(-1, "source", "ag_image0", true);
+    out_.images.back().interpolated = kernel_.filter && kernel_.config.hardware_filter;
     images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
     if (!kernel_.filter) {
       every_row("vec4 ag_color{0} = ag_texel0(ag_pixel{0});");

@@ -112,10 +112,10 @@ struct KernelParam {
 
 /// GLSL ready for the compiler, with what the executor must bind.
 /// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… the images in the order of `images`,
-/// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with
-/// `config.hardware_filter` need samplers with linear filtering and clamp-to-edge; the others only use texelFetch. The
-/// result is location 0, or with several rows an invocation, locations 0 … rows−1. A compute shader stores its result
-/// in a storage image, which is bound behind the others. Push constants: see kPushConstantBytes below.
+/// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Slots that are
+/// `interpolated` need a sampler with linear filtering and clamp-to-edge; the others only use texelFetch. The result is
+/// location 0, or with several rows an invocation, locations 0 … rows−1. A compute shader stores its result in a
+/// storage image, which is bound behind the others. Push constants: see kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
   /// Image slots: the anchor's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
@@ -126,7 +126,8 @@ struct AssembledKernel {
     int stage = -1;    ///< -1: the anchor's source; else as in KernelParam::stage
     std::string name;  ///< input name, or "source" for the anchor
     ImageRead read =
-        ImageRead::sampled;  ///< what the kernel got: a combined image sampler or a read-only storage image
+        ImageRead::sampled;     ///< what the kernel got: a combined image sampler or a read-only storage image
+    bool interpolated = false;  ///< by a sampler with linear filtering and clamp-to-edge
   };
   std::vector<ImageSlot> images;
   std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)

@@ -47,7 +47,7 @@ TEST_F(Forgetful, AResultThatIsNotMadeAnewStays) {
     ASSERT_TRUE(runner);
     HostResult first, again;
     ASSERT_TRUE((*runner)->run(*made, inputs, first, KernelTiming::none));
-    made->set_parameters(looks_back(0.5));
+    EXPECT_TRUE(made->set_parameters(looks_back(0.5)));
     const auto times = (*runner)->run(*made, inputs, again, KernelTiming::none);
     ASSERT_TRUE(times);
     EXPECT_EQ(times->kernels_run, 1);

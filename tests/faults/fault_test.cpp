@@ -50,6 +50,7 @@ Fault file_fault(const std::string& kind, const fs::path& root) {
 
 RunOptions FaultTest::options_at(const Fault& fault, long place) const {
   RunOptions options;
+  options.program = program_;
   options.environment = environment_;
   options.environment.insert(fault.environment.begin(), fault.environment.end());
   options.environment["AFTERGLOW_FAULT_CALL"] = std::to_string(place);
@@ -63,6 +64,7 @@ Outcome FaultTest::run_with(const std::vector<std::string>& arguments, const Fau
 void FaultTest::fill_caches(const std::vector<std::string>& arguments) const {
   const std::vector<std::string> before = files();
   RunOptions options;
+  options.program = program_;
   options.environment = environment_;
   EXPECT_EQ(run(arguments, options).exit_code, kDone);
   for (const auto& name : files())

@@ -54,6 +54,7 @@ class FaultTest : public CliTest {
   static void expect_clean_end(const Outcome& outcome);
 
   Environment environment_;  ///< of all runs
+  std::string program_;      ///< that is run; empty: the built one
 
  private:
   RunOptions options_at(const Fault& fault, long place) const;

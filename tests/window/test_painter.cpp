@@ -72,7 +72,7 @@ class PainterTest : public testing::Test {
       auto* row = reinterpret_cast<float*>(picture_.row(y));
       for (int i = 0; i < 64 * 4; ++i) row[i] = i % 4 == 3 ? 1.0f : 0.214f;
     }
-    picture_.memory().flush();
+    EXPECT_TRUE(picture_.memory().flush());
     auto submitter = Submitter::create(*device_);
     ASSERT_TRUE(submitter->submit([this](VkCommandBuffer commands) {
       const auto barrier = image_barrier(picture_.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
@@ -310,7 +310,7 @@ class PainterPartsTest : public PainterTest {
       auto* row = reinterpret_cast<float*>(picture_.row(y));
       for (int i = 0; i < 64 * 4; ++i) row[i] = i % 4 == 3 ? 1.0f : light * static_cast<float>(i % 7) / 7;
     }
-    picture_.memory().flush();
+    EXPECT_TRUE(picture_.memory().flush());
   }
 };
 

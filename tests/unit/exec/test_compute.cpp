@@ -340,7 +340,7 @@ TEST_F(Compute, AFrameThatRepeatsRunsNothingAndAnEditRunsTheDispatch) {
   HostResult out;
   const HostImage source{.pixels = pixels.data(), .size = size, .content = hash_text("the same")};
   for (const auto& [gain, ran] : std::initializer_list<std::pair<double, int>>{{0.25, 2}, {0.25, 0}, {0.5, 2}}) {
-    made->set_parameters(box(size, gain));
+    EXPECT_TRUE(made->set_parameters(box(size, gain)));
     const auto times = (*runner)->run(*made, {{"source", source}}, out, KernelTiming::none);
     ASSERT_TRUE(times) << times.error().text();
     EXPECT_EQ(times->kernels_run, ran);

@@ -82,13 +82,13 @@ TEST_F(Once, OtherSettingsMakeItAgain) {
   HostResult out;
   run(*frames, *made, size, pixels, out);
   for (const double seed : {2.0, 2.0, 3.0}) {
-    made->set_parameters(graph(size, seed));
+    EXPECT_TRUE(made->set_parameters(graph(size, seed)));
     run(*frames, *made, size, noise(size, 62), out);
     const auto times = run(*frames, *made, size, pixels, out);
     EXPECT_EQ(times.kernels_kept, 2);
     EXPECT_EQ(out.pixels, alone(graph(size, seed), {}, size, pixels, true)) << seed;
   }
-  made->set_parameters(graph(size, 4));
+  EXPECT_TRUE(made->set_parameters(graph(size, 4)));
   EXPECT_EQ(run(*frames, *made, size, pixels, out).kernels_kept, 0);
 }
 

@@ -164,11 +164,11 @@ TEST_F(ProgramTest, ParametersAreRewrittenWithoutNewObjects) {
   const auto frame_objects = (*runner)->counters();
   const auto compiled = compiler_->counters().compiled;
 
-  made->set_parameters(pyramid(size, 4.0));
+  EXPECT_TRUE(made->set_parameters(pyramid(size, 4.0)));
   ASSERT_TRUE((*runner)->run(*made, inputs, changed, KernelTiming::none));
   EXPECT_NE(first.pixels, changed.pixels);
   EXPECT_EQ(changed.pixels, run(pyramid(size, 4.0), inputs).pixels);
-  made->set_parameters(pyramid(size, 0.5));
+  EXPECT_TRUE(made->set_parameters(pyramid(size, 0.5)));
   ASSERT_TRUE((*runner)->run(*made, inputs, again, KernelTiming::none));
   EXPECT_EQ(first.pixels, again.pixels);
 
@@ -190,8 +190,8 @@ TEST_F(ProgramTest, ParametersOfAnotherStructureAreIgnored) {
   HostResult before, after;
   ASSERT_TRUE((*runner)->run(*made, inputs, before, KernelTiming::none));
   GraphBuilder empty(size);
-  made->set_parameters(empty.finish(empty.source()));
-  made->set_parameters(diamond(size));
+  EXPECT_TRUE(made->set_parameters(empty.finish(empty.source())));
+  EXPECT_TRUE(made->set_parameters(diamond(size)));
   ASSERT_TRUE((*runner)->run(*made, inputs, after, KernelTiming::none));
   EXPECT_EQ(before.pixels, after.pixels);
 }

@@ -34,7 +34,7 @@ GpuImage upload(const Device& device, const TestImage& image) {
       HostAccess::write));
   for (int y = 0; y < image.size.height; ++y)
     std::memcpy(gpu.row(y), image.at(0, y), static_cast<std::size_t>(image.size.width) * 16);
-  gpu.memory().flush();
+  EXPECT_TRUE(gpu.memory().flush());
   return gpu;
 }
 
@@ -109,11 +109,11 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   const auto uniforms = need(Buffer::create(*device_, std::max<std::size_t>(block.size(), 16),
                                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "block"));
   if (!block.empty()) std::memcpy(uniforms.data(), block.data(), block.size());
-  uniforms.memory().flush();
+  EXPECT_TRUE(uniforms.memory().flush());
 
   const auto loops = need(Buffer::create(*device_, 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, HostAccess::read, "loops"));
   std::memset(loops.data(), 0, 4);
-  loops.memory().flush();
+  EXPECT_TRUE(loops.memory().flush());
 
   const auto& [layout, vertex, fragment, pipeline] = this->pipeline(kernel, format);
   const auto sampler = need(create_sampler(*device_, VK_FILTER_LINEAR));
@@ -218,7 +218,7 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   need(vk.vkQueueWaitIdle(device_->queue()));
   vk.vkFreeCommandBuffers(device, pool_, 1, &commands);
 
-  staging.memory().invalidate();
+  EXPECT_TRUE(staging.memory().invalidate());
   TestImage out{target, std::vector<float>(static_cast<std::size_t>(target.area()) * 4)};
   if (!half_target) {
     std::memcpy(out.rgba.data(), staging.data(), out.rgba.size() * sizeof(float));

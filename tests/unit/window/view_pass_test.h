@@ -72,7 +72,7 @@ class ViewPassTest : public testing::Test {
         std::memcpy(made->row(y), image.at(0, y), values * sizeof(float));
       }
     }
-    made->memory().flush();
+    EXPECT_TRUE(made->memory().flush());
     return std::move(*made);
   }
 
@@ -96,7 +96,7 @@ class ViewPassTest : public testing::Test {
     EXPECT_TRUE(submitter->submit(
         [&](VkCommandBuffer commands) { record(commands, **pass, frame, target_size, *target, *buffer, sources); }));
     EXPECT_TRUE(submitter->wait());
-    buffer->memory().invalidate();
+    EXPECT_TRUE(buffer->memory().invalidate());
     Image out(target_size.width, target_size.height, 4);
     std::memcpy(out.pixels.data(), buffer->data(), out.bytes());
     return out;
