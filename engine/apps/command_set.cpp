@@ -75,7 +75,7 @@ Result<void> run_set(const SetArguments& arguments, Console& console) {
   }
   for (const auto& note : rewrite.notes) console.diagnostics().warn(note);
   warn_of_missing_files(edits, search_path_for(file, options.paths), console);
-  if (!arguments.dry_run) AFTERGLOW_CHECK(writer.save(rewrite));
+  AFTERGLOW_CHECK(arguments.dry_run ? writer.check_file() : writer.save(rewrite));
   output("{}", difference_text(file.string(), rewrite.before, rewrite.text));
   if (rewrite.text == rewrite.before) console.diagnostics().note("the preset says so already; nothing was written");
   return {};

@@ -77,6 +77,8 @@ class PresetWriter {
   /// Replaces the file, whole or not at all; links are followed, mode bits kept. Does nothing when there is no change.
   /// Errors (io): the file is no longer what the plan was made from; it cannot be written. Usage: it lies in a pack.
   Result<void> save(const Rewrite& rewrite);
+  /// Errors (usage): the file lies in a pack.
+  Result<void> check_file() const;
 
   /// How many saves can be taken back, at most 100.
   std::size_t saves() const { return saves_.size(); }

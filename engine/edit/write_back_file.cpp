@@ -45,11 +45,16 @@ Result<Rewrite> PresetWriter::plan(const std::vector<PresetEdit>& edits,
   return rewrite;
 }
 
-Result<void> PresetWriter::save(const Rewrite& rewrite) {
-  if (rewrite.text == rewrite.before) return {};
+Result<void> PresetWriter::check_file() const {
   if (const std::string pack = pack_of(file_, cache_folder()); !pack.empty())
     return Error{ErrorKind::usage, "lies in the pack " + pack + ", and packs are not written: copy or unpack it first",
                  file_.filename().string()};
+  return {};
+}
+
+Result<void> PresetWriter::save(const Rewrite& rewrite) {
+  if (rewrite.text == rewrite.before) return {};
+  AFTERGLOW_CHECK(check_file());
   AFTERGLOW_CHECK(replace(rewrite.before, rewrite.text));
   saves_.push_back({rewrite.before, rewrite.text});
   if (saves_.size() > kMostSaves) saves_.erase(saves_.begin());

@@ -41,6 +41,8 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
     MetadataEntry entry{param.name().string(), {}};
     if (type == OIIO::TypeString) {
       entry.value = param.get_string();
+      const auto& text = std::get<std::string>(entry.value);
+      if (entry.name == "DateTime" && text.find_first_not_of(" :") == std::string::npos) continue;  // "unknown"
       if (is_kept_as_text(entry.name))
         if (auto number = number_of_text(entry.name, std::get<std::string>(entry.value)))
           entry.value = *std::move(number);

@@ -137,6 +137,8 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
       describe_shape(spec, true);
       break;
     case OutputKind::tiff:
+      // The time of the writing would make other bytes of the same picture: "unknown", as Exif writes it.
+      if (spec.get_string_attribute("DateTime").empty()) spec.attribute("DateTime", "    :  :     :  :  ");
       spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression));
       spec.attribute("tiff:zipquality", kTiffZipLevel);
       if (form.type == SampleType::half) spec.attribute("tiff:half", 1);  // else floats are written

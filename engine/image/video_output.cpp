@@ -165,6 +165,9 @@ Result<const Codec*> codec_of(const Container& container, const WriteOptions& op
   return &*codec;
 }
 
+/// Logarithms, HDR and light itself do so in eight bits.
+bool shows_steps(const WriteOptions& options) { return options.space && !options.space->of_display(); }
+
 Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& options, bool deep, bool has_alpha,
                                      const std::filesystem::path& file) {
   const std::string& wanted = options.video.pixel_format;
@@ -173,9 +176,7 @@ Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& opt
     const char* opaque = deep ? codec.deep : codec.layouts.front().c_str();
     if (std::string_view(codec.name) == "gif" && !has_alpha) opaque = "rgb24";
     const bool ten = std::ranges::find(codec.layouts, "yuv420p10le") != codec.layouts.end();
-    // Logarithms, HDR and light itself show steps in eight bits.
-    const bool shows_steps = options.space && !options.space->of_display();
-    if (shows_steps && ten && std::string_view(opaque) == "yuv420p") opaque = "yuv420p10le";
+    if (shows_steps(options) && ten && std::string_view(opaque) == "yuv420p") opaque = "yuv420p10le";
     return find_pixel_layout(has_alpha && alpha ? alpha : opaque);
   }
   const PixelLayout* layout = find_pixel_layout(lower(wanted));
@@ -259,6 +260,8 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   plan.settings = codec->settings;
   plan.exact = codec->exact;
   AFTERGLOW_TRY(plan.pack.layout, layout_of(*codec, options, deep, has_alpha, file));
+  const bool ten = std::ranges::find(codec->layouts, "yuv420p10le") != codec->layouts.end();
+  plan.shows_steps = shows_steps(options) && ten && plan.pack.layout->bits == 8 && options.video.pixel_format.empty();
   AFTERGLOW_CHECK(choose_quality(*codec, options, file, plan));
   if (plan.codec == "dnxhr") {
     const PixelLayout& layout = *plan.pack.layout;

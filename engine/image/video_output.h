@@ -43,6 +43,7 @@ struct VideoPlan {
   PackRules pack;
   int primaries = 2, transfer = 2, matrix = 2;  ///< of ITU-T H.273; 2: not said
   bool exact = false;                           ///< what goes in comes out
+  bool shows_steps = false;                     ///< 8 bits of a space that wants more, for want of a format with alpha
   Size size;
   Rational pixel_aspect{1, 1};   ///< width of a pixel to its height
   Rational rate{24, 1};          ///< frames a second, on the average

@@ -19,6 +19,11 @@ Result<void> check_video_encoder(const VideoPlan& plan, const fs::path& file) {
 }
 
 Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, VideoPlan plan, Diagnostics& diagnostics) {
+  if (plan.shows_steps)
+    diagnostics.warn(
+        fmt::format("{}: {} with alpha has 8 bits, which show steps in this --output-space; --pix-fmt "
+                    "yuv420p10le has 10, without alpha",
+                    file.filename().string(), plan.codec));
   AFTERGLOW_CHECK(check_video_size(plan, plan.size, file));
   AFTERGLOW_TRY(const FfmpegModule* module, ffmpeg_module());
   std::unique_ptr<VideoWriter> writer(new VideoWriter());

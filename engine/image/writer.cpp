@@ -16,6 +16,7 @@
 #include "core/file_time.h"
 #include "core/temporary.h"
 #include "core/text.h"
+#include "image/dpx_header.h"
 #include "image/encode.h"
 #include "image/exr_file.h"
 #include "image/exr_primaries.h"
@@ -59,14 +60,15 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
   return write(picture, out, name, options, diagnostics);
 }
 
-/// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what
-/// a library makes of it.
+/// Writes `temporary` through an OutputFile; it will be called `name`. What the file itself reports ("No space left on
+/// device") goes before what a library makes of it.
 Result<void> write_through(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
-                           const WriteOptions& options, Diagnostics& diagnostics) {
+                           const std::string& name, const WriteOptions& options, Diagnostics& diagnostics) {
   OutputFile out(temporary);
   Result<void> written;
   try {
     if (!out.failure()) written = write_format(picture, format, out, temporary.string(), options, diagnostics);
+    if (written && format.kind == OutputKind::dpx) set_dpx_name_and_time(picture, name, out);
   } catch (const std::exception& error) {
     written = Error{ErrorKind::io, "cannot be written: " + exception_text(error)};
   }
@@ -79,12 +81,12 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
 
 /// Writes to `temporary` and makes sure that it is all there.
 Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
-                           const WriteOptions& options, Diagnostics& diagnostics) {
+                           const std::string& name, const WriteOptions& options, Diagnostics& diagnostics) {
   if (!strip_form(picture, format, options).alpha && has_transparency(picture))
     diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
                                  format.extensions[0].substr(1),
                                  format.alpha ? " in 10 bits (--type uint16 has)" : ""));
-  AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
+  AFTERGLOW_CHECK(write_through(picture, format, temporary, name, options, diagnostics));
   // An OutputFile has seen every byte go out; what it cannot see is a library that stopped early without saying so.
   if (format.kind == OutputKind::png || format.kind == OutputKind::pam || options.keep_layers) return {};
   ReadOptions anything;
@@ -201,7 +203,8 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
   try {
     AFTERGLOW_CHECK(check_picture(picture));
     Temporary temporary(file);
-    if (auto written = write_checked(picture, *format, temporary.path(), options, named); !written) {
+    if (auto written = write_checked(picture, *format, temporary.path(), file.filename().string(), options, named);
+        !written) {
       Error error = std::move(written).error();
       error.file = file.string();  // not the temporary name
       return error;

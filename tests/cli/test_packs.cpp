@@ -97,6 +97,7 @@ TEST_F(Packs, PresetsInAZipAreNotChanged) {
   EXPECT_EQ(outcome.exit_code, kUsage);
   EXPECT_THAT(outcome.err, HasSubstr("warm.lua: error: lies in the pack kit.zip, and packs are not written"));
   EXPECT_THAT(run_here({"set", "kit.zip", "warmth.gain=3"}).out, IsEmpty());
+  EXPECT_EQ(run_here({"set", "kit.zip", "warmth.gain=3", "--dry-run"}).exit_code, kUsage);
   EXPECT_EQ(run_here({"set", "kit", "warmth.gain=3"}).exit_code, kDone);
   EXPECT_THAT(read("kit/presets/warm.lua"), HasSubstr("gain = 3"));
 }

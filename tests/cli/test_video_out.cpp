@@ -44,6 +44,22 @@ constexpr Kind kKinds[] = {
 
 class EveryCodec : public VideoOut, public ::testing::WithParamInterface<Kind> {};
 
+/// VP9 has no 10 bits beside alpha.
+TEST_F(VideoOut, StepsThatAlphaBringsAreTold) {
+  make_exr("alpha.exr");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack {}\n");
+  const auto told = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", "look.lua", "alpha.exr", "-o", "alpha.webm", "--output-space", "pq"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(told({}), HasSubstr("alpha.webm: vp9 with alpha has 8 bits, which show steps in this --output-space"));
+  EXPECT_EQ(stream_of("alpha.webm").at("pix_fmt"), "yuv420p");  // as ffmpeg's own decoder sees it
+  EXPECT_THAT(told({"--pix-fmt", "yuv420p10le"}), testing::Not(HasSubstr("show steps")));
+}
+
 TEST_P(EveryCodec, HoldsEveryFrameInOrder) {
   const Kind& kind = GetParam();
   constexpr int kFrames = 12;

@@ -273,7 +273,7 @@ TEST(Write, Compressions) {
 TEST(Write, SameBytesEveryTime) {
   const TemporaryFolder folder;
   const Picture picture = make_picture(300, 200, true);
-  for (const char* name : {"o.exr", "o.png", "o.jpg", "o.hdr"}) {
+  for (const char* name : {"o.exr", "o.png", "o.jpg", "o.hdr", "o.dpx", "o.tif"}) {
     WriteOptions options;
     options.dither = true;
     ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name, options));
@@ -281,6 +281,11 @@ TEST(Write, SameBytesEveryTime) {
     ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name, options));
     EXPECT_EQ(first, file_bytes(folder / name)) << name;
   }
+  // Neither the name that it had while it was written nor the time of day.
+  const std::string dpx = file_bytes(folder / "o.dpx");
+  EXPECT_EQ(dpx.substr(36, 100), std::string("o.dpx") + std::string(95, '\0'));
+  EXPECT_EQ(dpx.substr(136, 24), std::string(24, '\0'));
+  EXPECT_THAT(file_bytes(folder / "o.tif"), HasSubstr("    :  :     :  :  "));
 }
 
 // Codes of a flat area of this light.

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// What the writer of DPX files leaves to be said in their headers. Internal to the room.
+#pragma once
+
+#include <string>
+
+#include "image/output_file.h"
+#include "image/picture.h"
+
+namespace afterglow {
+
+/// The name of the file, in place of that which it has while it is written, and no time of creation where the picture
+/// has none: the same picture is the same bytes. (SMPTE 268M, file information header.)
+void set_dpx_name_and_time(const Picture& picture, const std::string& name, OutputFile& out);
+
+}  // namespace afterglow
