@@ -114,9 +114,7 @@ TEST_F(PlaySoak, EachTurnShowsItsFrameWithItsLookAndNothingGrows) {
   const Holds before(program_->pid());
   int turn = 0;
   for (; turn < turns || std::chrono::steady_clock::now() - began < least; ++turn) ASSERT_NO_FATAL_FAILURE(take_turn());
-  // The watch for NaN has a device of its own while it looks at a frame.
-  Holds after(program_->pid());
-  until([&] { return (after = Holds(program_->pid())).threads <= before.threads + 2; });
+  const Holds after(program_->pid());
   const double minutes =
       std::chrono::duration<double, std::ratio<60>>(std::chrono::steady_clock::now() - began).count();
   fmt::print("{} turns in {:.0f} minutes: {} seeks, {} saves, {} sizes; {:.0f} MiB, then {:.0f} MiB\n", warm + turn,
@@ -124,7 +122,9 @@ TEST_F(PlaySoak, EachTurnShowsItsFrameWithItsLookAndNothingGrows) {
              static_cast<double>(after.bytes) / (1 << 20));
   EXPECT_LE(after.bytes, before.bytes + (24u << 20));
   EXPECT_LE(after.handles, before.handles + 4);
-  EXPECT_LE(after.threads, before.threads + 2);
+  // The watch for NaN and the pictures of looks have devices of their own, which may come late: lavapipe's threads.
+  constexpr std::size_t kOfDevices = 2 * 6;
+  EXPECT_LE(after.threads, before.threads + 2 + kOfDevices);
   ASSERT_TRUE(user("key q"));
   expect_clean_end();
 }
