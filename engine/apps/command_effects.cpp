@@ -99,6 +99,8 @@ std::string effect_text(const EffectSchema& effect) {
 
 Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
   AFTERGLOW_CHECK(arguments.preset.check_paths());
+  if (arguments.masks && !arguments.json)
+    return Error{ErrorKind::usage, "--masks belongs to --json", "afterglow effects"};
   const std::vector<std::filesystem::path> extra(arguments.preset.paths.begin(), arguments.preset.paths.end());
   AFTERGLOW_TRY(auto effects, list_effects(search_path_for({}, extra), console.diagnostics()));
   if (effects.empty())

@@ -327,6 +327,7 @@ TEST_F(Inspect, MasksAreListedWithTheirSettings) {
   EXPECT_THAT(names,
               ::testing::ElementsAre("cryptomatte", "depth", "file", "hue", "id", "layer", "linear", "luma", "radial"));
   EXPECT_THAT(run({"effects", "mask.lumma"}).err, HasSubstr("did you mean 'mask.luma'?"));
+  EXPECT_EQ(run({"effects", "--masks"}).exit_code, kUsage);
 }
 
 TEST_F(Inspect, EffectsAsMarkdown) {
