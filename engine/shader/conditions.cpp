@@ -15,7 +15,8 @@ namespace {
 
 using Number = std::optional<std::int64_t>;
 
-constexpr std::size_t kMostTokens = 1024;  ///< of a condition, once its macros are expanded
+constexpr std::size_t kMostTokens = 1024;  ///< of a condition, with those that its macros are expanded from
+constexpr std::size_t kMostMacros = 64;    ///< that use one another
 constexpr int kMostDepth = 256;            ///< of what stands within it
 
 struct Operator {
@@ -204,20 +205,20 @@ Conditions::Number Conditions::is_defined(std::string_view name) const {
   return 0;
 }
 
-bool Conditions::expand(std::span<const Token> tokens, std::vector<std::string_view>& active,
-                        std::vector<Token>& out) const {
+bool Conditions::expand(std::span<const Token> tokens, Expansion& into) const {
   for (const Token& token : tokens) {
-    if (out.size() >= kMostTokens) return false;
+    if (++into.steps > kMostTokens) return false;
     const auto macro = token.is_identifier() ? macros_.find(token.text) : macros_.end();
-    if (macro == macros_.end() || std::ranges::find(active, token.text) != active.end()) {
-      out.push_back(token);
+    const bool stays = macro == macros_.end() || !macro->second.defined ||
+                       std::ranges::find(into.active, token.text) != into.active.end();
+    if (stays) {
+      into.out.push_back(token);
       continue;
     }
-    if (!macro->second.certain || !macro->second.plain || active.size() >= static_cast<std::size_t>(kMostDepth))
-      return false;
-    active.push_back(token.text);
-    const bool good = expand(macro->second.body, active, out);
-    active.pop_back();
+    if (!macro->second.certain || !macro->second.plain || into.active.size() >= kMostMacros) return false;
+    into.active.push_back(token.text);
+    const bool good = expand(macro->second.body, into);
+    into.active.pop_back();
     if (!good) return false;
   }
   return true;
@@ -229,7 +230,7 @@ Conditions::Number Conditions::holds(std::span<const Token> line) const {
     const Number defined = is_defined(line[2].text);
     return defined && line[1].is("ifndef") ? Number(*defined == 0) : defined;
   }
-  std::vector<Token> tokens;
+  Expansion expansion;
   for (std::size_t i = 2; i < line.size(); ++i) {
     if (line[i].is("defined")) {
       const bool brackets = i + 3 < line.size() && line[i + 1].is("(") && line[i + 3].is(")");
@@ -240,14 +241,13 @@ Conditions::Number Conditions::holds(std::span<const Token> line) const {
       Token number = line[i];
       number.kind = TokenKind::number;
       number.text = *defined != 0 ? "1" : "0";
-      tokens.push_back(number);
+      expansion.out.push_back(number);
       i = brackets ? i + 3 : i + 1;
       continue;
     }
-    std::vector<std::string_view> active;
-    if (!expand(line.subspan(i, 1), active, tokens)) return std::nullopt;
+    if (!expand(line.subspan(i, 1), expansion)) return std::nullopt;
   }
-  return Condition(tokens).value();
+  return Condition(expansion.out).value();
 }
 
 }  // namespace afterglow

@@ -53,7 +53,12 @@ class Conditions {
   void define(std::span<const Token> tokens);
   Number holds(std::span<const Token> line) const;
   Number is_defined(std::string_view name) const;
-  bool expand(std::span<const Token> tokens, std::vector<std::string_view>& active, std::vector<Token>& out) const;
+  struct Expansion {
+    std::vector<std::string_view> active;  ///< macros that are being expanded
+    std::vector<Token> out;
+    std::size_t steps = 0;  ///< so far: macros of nothing take time, too
+  };
+  bool expand(std::span<const Token> tokens, Expansion& into) const;
 
   const std::string& file_;
   std::vector<Group> groups_;

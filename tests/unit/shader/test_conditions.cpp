@@ -119,6 +119,10 @@ TEST(Conditions, MacrosThatGrowAreLeftToTheCheckOfMacros) {
   std::string text = "#define A0 1 + 1\n";
   for (int i = 1; i < 60; ++i) text += fmt::format("#define A{0} A{1} + A{1}\n", i, i - 1);
   EXPECT_THAT(words(text + "#if A59\na\n#endif"), ElementsAre("a"));
+  std::string nothing = "#define N0\n";
+  for (int i = 1; i < 60; ++i) nothing += fmt::format("#define N{0} N{1} N{1}\n", i, i - 1);
+  EXPECT_THAT(words(nothing + "#if N59 1\na\n#else\nb\n#endif"), ElementsAre("a", "b"));
+  EXPECT_THAT(words("#define U\n#undef U\n#if U 1\na\n#else\nb\n#endif"), ElementsAre("a", "b"));
   std::string deep = "#define B0 0\n";
   for (int i = 1; i < 2000; ++i) deep += fmt::format("#define B{0} B{1}\n", i, i - 1);
   EXPECT_THAT(words(deep + "#if B1999\na\n#endif"), ElementsAre("a"));
