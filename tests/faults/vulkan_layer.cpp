@@ -8,7 +8,8 @@
 //                              device stays lost.
 //   AFTERGLOW_FAULT_LOG=FILE   written at each such call: its number and its name
 //
-// One device at a time, as the program has it.
+// One device at a time, as the program has it; a further one without a window (the watch for NaN) lacks some functions,
+// and those of the first stay.
 #include <vulkan/vulkan.h>
 
 #include <array>
@@ -122,13 +123,13 @@ enum CallNumber {
 /// Null when the function is none of those above or does not exist below.
 template <typename Load>
 PFN_vkVoidFunction instance_call(const char* function, Load load) {
-#define WRAP(call, may)                                                                   \
-  if (std::strcmp(function, "vk" #call) == 0) {                                           \
-    using Wrapped = Call<k##call, PFN_vk##call>;                                          \
-    Wrapped::next = reinterpret_cast<PFN_vk##call>(load("vk" #call));                     \
-    Wrapped::name = #call;                                                                \
-    Wrapped::codes = may;                                                                 \
-    return Wrapped::next ? reinterpret_cast<PFN_vkVoidFunction>(&Wrapped::run) : nullptr; \
+#define WRAP(call, may)                                                                             \
+  if (std::strcmp(function, "vk" #call) == 0) {                                                     \
+    using Wrapped = Call<k##call, PFN_vk##call>;                                                    \
+    if (const auto found = reinterpret_cast<PFN_vk##call>(load("vk" #call))) Wrapped::next = found; \
+    Wrapped::name = #call;                                                                          \
+    Wrapped::codes = may;                                                                           \
+    return Wrapped::next ? reinterpret_cast<PFN_vkVoidFunction>(&Wrapped::run) : nullptr;           \
   }
   INSTANCE_CALLS(WRAP)
   return nullptr;
