@@ -116,6 +116,13 @@ Result<void> FrameRunner::State::given_up(Result<void> failed) {
   return failed;
 }
 
+/// Nothing is left of a result that cannot be read. `part` is a copy: `shown` goes then.
+Result<std::uint64_t> FrameRunner::State::read_back(Rect part, HostResult& out, bool look_for_flags) {
+  auto held = without_exceptions([&] { return images.result.download(images.staging, part, out, look_for_flags); });
+  if (!held) forget_result();
+  return held;
+}
+
 /// Of a frame that failed: parts of it may be on their way back, and the image be left as they found it.
 void FrameRunner::State::forget_result() {
   (void)images.staging.wait();

@@ -47,7 +47,7 @@ class FrameInputs {
   std::vector<VkImageLayout> layouts() const;  ///< as commands that were recorded leave them
   /// Puts back what `layouts` gave: what was recorded since is not submitted.
   void set_layouts(const std::vector<VkImageLayout>& layouts);
-  int made() const { return made_; }           ///< images so far
+  int made() const { return made_; }  ///< images so far
 
  private:
   struct Held {

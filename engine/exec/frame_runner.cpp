@@ -81,12 +81,9 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
     return times;
   }
   const auto start = Clock::now();
-  auto held = without_exceptions([&] { return s.images.result.download(s.images.staging, *s.shown, out, s.flags); });
+  auto held = s.read_back(*s.shown, out, s.flags);
   s.begun.reset();
-  if (!held) {
-    s.forget_result();
-    return std::move(held).error();
-  }
+  if (!held) return std::move(held).error();
   out.clamped += *held;
   times.readback = milliseconds_since(start);
   return times;
@@ -131,13 +128,7 @@ DeviceImages FrameRunner::images() const { return state_->images.on_device(state
 
 Result<void> FrameRunner::read_result(HostResult& out, const std::optional<Rect>& part) {
   if (!state_->shown) return Error{ErrorKind::other, "no frame was run, there is no result to read"};
-  auto held = without_exceptions(
-      [&] { return state_->images.result.download(state_->images.staging, part.value_or(*state_->shown), out); });
-  if (!held) {
-    state_->forget_result();
-    return std::move(held).error();
-  }
-  out.clamped = *held;
+  AFTERGLOW_TRY(out.clamped, state_->read_back(part.value_or(*state_->shown), out, false));
   return {};
 }
 
@@ -155,15 +146,9 @@ Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
   const auto unpack = [&, w = width](int y, const std::byte* from) {
     return unpack_row(from, found->binding.format, w, out.pixels.data() + static_cast<std::ptrdiff_t>(y) * w * 4);
   };
-  Staging& staging = state_->images.staging;
-  auto held = without_exceptions([&] {
-    return staging.download({found->binding.image, found->binding.format, found->binding.size}, found->layout, unpack);
-  });
-  if (!held) {
-    (void)staging.wait();
-    return std::move(held).error();
-  }
-  out.clamped = *held;
+  AFTERGLOW_TRY(out.clamped,
+                state_->images.staging.download({found->binding.image, found->binding.format, found->binding.size},
+                                                found->layout, unpack));
   return out;
 }
 

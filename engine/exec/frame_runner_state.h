@@ -86,6 +86,7 @@ struct FrameRunner::State {
   Result<void> launch(Program& program, KernelTiming timing, const Choose& choose);
   Result<void> given_up(Result<void> failed);
   void forget_result();
+  Result<std::uint64_t> read_back(Rect part, HostResult& out, bool look_for_flags);
   Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing);
   Result<void> time_separately(Program& program, const std::vector<bool>& run);
   Result<void> wait();

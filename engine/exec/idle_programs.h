@@ -25,7 +25,7 @@ class IdlePrograms {
   /// `whole` runs every effect; its graph says whether it divides by alpha. Errors: those of Program::create.
   Result<Choice> choose(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler, Program& whole,
                         const Graph& graph, const ProgramOptions& options, const SourceContent& content);
-  /// See Program::set_parameters. Limits of `graph` count from here on.
+  /// See Program::set_parameters. Limits of `graph` count from here on. Errors: device.
   Result<void> set_parameters(const Graph& graph);
   /// See Program::use.
   Result<void> use(const std::shared_ptr<Histories>& histories);

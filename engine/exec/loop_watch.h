@@ -24,7 +24,7 @@ class LoopWatch {
   /// Makes what kernels wrote known to the CPU: behind the last of them.
   void record(const Device& device, VkCommandBuffer commands) const;
   /// Notes a loop that has run away since it was called last, and lets all loops turn again. To be called when a run is
-  /// over.
+  /// over. Errors: device.
   Result<void> look();
   std::uint64_t runaways() const { return runaways_; }
   /// About the loop that ran away last: script.

@@ -25,7 +25,8 @@ class ParameterBuffer {
                                         const std::vector<const CompiledKernel*>& compiled);
   ParameterBuffer() = default;
 
-  /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone.
+  /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone. Errors:
+  /// device.
   Result<void> write(const Graph& graph);
   /// The block of a kernel as the buffer holds it.
   std::string_view bytes(std::size_t kernel) const;

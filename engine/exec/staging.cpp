@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/exception.h"
 #include "exec/convert.h"
 
 namespace afterglow {
@@ -158,6 +159,13 @@ Result<void> Staging::begin_download(const StagedImage& image, VkImageLayout lay
 
 Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack,
                                         int from, int to) {
+  auto held = without_exceptions([&] { return move_back(image, layout, unpack, from, to); });
+  if (!held) (void)wait();
+  return held;
+}
+
+Result<std::uint64_t> Staging::move_back(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack,
+                                         int from, int to) {
   std::uint64_t held = 0;
   const auto take = [&](Band& band) -> Result<void> {
     if (band.rows == 0) return {};

@@ -36,7 +36,7 @@ class Staging {
   Result<std::uint64_t> upload(const StagedImage& image, const PackRow& pack);
 
   /// Takes the image in `layout`, written by draws, and leaves it so. Rows `from` … `to` − 1 are moved, no others.
-  /// Returns the sum of `unpack`.
+  /// Returns the sum of `unpack`. Where it fails nothing is on its way, and the image may be in another layout.
   Result<std::uint64_t> download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack, int from,
                                  int to);
   Result<std::uint64_t> download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack) {
@@ -63,6 +63,8 @@ class Staging {
   using Bands = std::vector<Band>;
   Result<void> prepare(Bands& bands, std::size_t first, const StagedImage& image, HostAccess access);
 
+  Result<std::uint64_t> move_back(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack, int from,
+                                  int to);
   Result<void> submit_download(Band& band, const StagedImage& image, VkImageLayout layout, int first, int from, int to);
   int rows_per_band(const StagedImage& image) const;
   int bands_for(const StagedImage& image) const;

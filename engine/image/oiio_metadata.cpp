@@ -44,8 +44,7 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
       const auto& text = std::get<std::string>(entry.value);
       if (entry.name == "DateTime" && text.find_first_not_of(" :") == std::string::npos) continue;  // "unknown"
       if (is_kept_as_text(entry.name))
-        if (auto number = number_of_text(entry.name, std::get<std::string>(entry.value)))
-          entry.value = *std::move(number);
+        if (auto number = number_of_text(entry.name, text)) entry.value = *std::move(number);
     } else if (type == OIIO::TypeTimeCode) {
       std::string code = time_code_text(*static_cast<const std::uint32_t*>(param.data()));
       if (code.empty()) continue;

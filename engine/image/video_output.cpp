@@ -165,8 +165,11 @@ Result<const Codec*> codec_of(const Container& container, const WriteOptions& op
   return &*codec;
 }
 
-/// Logarithms, HDR and light itself do so in eight bits.
-bool shows_steps(const WriteOptions& options) { return options.space && !options.space->of_display(); }
+/// Logarithms, HDR and light itself show steps in eight bits.
+bool wants_ten_bits(const Codec& codec, const WriteOptions& options) {
+  const bool has_ten = std::ranges::find(codec.layouts, "yuv420p10le") != codec.layouts.end();
+  return has_ten && options.space && !options.space->of_display();
+}
 
 Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& options, bool deep, bool has_alpha,
                                      const std::filesystem::path& file) {
@@ -175,8 +178,7 @@ Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& opt
     const char* alpha = deep ? codec.deep_alpha : codec.alpha;
     const char* opaque = deep ? codec.deep : codec.layouts.front().c_str();
     if (std::string_view(codec.name) == "gif" && !has_alpha) opaque = "rgb24";
-    const bool ten = std::ranges::find(codec.layouts, "yuv420p10le") != codec.layouts.end();
-    if (shows_steps(options) && ten && std::string_view(opaque) == "yuv420p") opaque = "yuv420p10le";
+    if (wants_ten_bits(codec, options) && std::string_view(opaque) == "yuv420p") opaque = "yuv420p10le";
     return find_pixel_layout(has_alpha && alpha ? alpha : opaque);
   }
   const PixelLayout* layout = find_pixel_layout(lower(wanted));
@@ -260,8 +262,8 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   plan.settings = codec->settings;
   plan.exact = codec->exact;
   AFTERGLOW_TRY(plan.pack.layout, layout_of(*codec, options, deep, has_alpha, file));
-  const bool ten = std::ranges::find(codec->layouts, "yuv420p10le") != codec->layouts.end();
-  plan.shows_steps = shows_steps(options) && ten && plan.pack.layout->bits == 8 && options.video.pixel_format.empty();
+  plan.shows_steps =
+      wants_ten_bits(*codec, options) && plan.pack.layout->bits == 8 && options.video.pixel_format.empty();
   AFTERGLOW_CHECK(choose_quality(*codec, options, file, plan));
   if (plan.codec == "dnxhr") {
     const PixelLayout& layout = *plan.pack.layout;

@@ -15,7 +15,8 @@ AssembledKernel::UnsetVariable::Role role_of(Unset::Kind kind) {
 }
 
 /// Functions of GLSL that are the prelude's: a sampler interpolates or not, as the device is told for the engine's own
-/// reads, and drivers fold constants in ways of their own. Halves are rounded as the device does, wherever that is left open.
+/// reads, and drivers fold constants in ways of their own. Halves are rounded as the device does,
+/// wherever that is left open.
 NameMap names_of_prelude() {
   return {{"texture", {"ag_texture"}},
           {"textureLod", {"ag_texture"}},

@@ -49,8 +49,7 @@ std::map<std::uint32_t, std::uint64_t> block_sizes(const Module& module) {
 /// of straight code take turns and share what they read.
 constexpr std::uint64_t kMostTurns = 16, kMostMore = 1024;
 
-}  // namespace
-
+/// Asks for the loops that are to become straight code. False: there is none.
 bool mark_short_loops(Module& module) {
   const std::vector<Loop> loops = find_loops(module);
   const std::map<std::uint32_t, std::uint64_t> sizes = block_sizes(module);
@@ -81,6 +80,8 @@ bool mark_short_loops(Module& module) {
   }
   return any;
 }
+
+}  // namespace
 
 void be_quiet(spvtools::Optimizer& optimizer) {
   optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
@@ -143,6 +144,12 @@ void add_inlining_passes(spvtools::Optimizer& optimizer) {
       .RegisterPass(spvtools::CreateLocalSingleStoreElimPass());
 }
 
+void add_rewriting_passes(spvtools::Optimizer& optimizer, Module& inlined) {
+  be_quiet(optimizer);
+  optimizer.RegisterPass(spvtools::CreateSSARewritePass());
+  if (mark_short_loops(inlined)) optimizer.RegisterPass(spvtools::CreateLoopUnrollPass(true));
+}
+
 std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Module& module) {
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);
@@ -177,12 +184,9 @@ std::optional<Module> without_variables(const Module& module) {
   inlining.RegisterPass(spvtools::CreateAggressiveDCEPass());
   auto inlined = run_passes(inlining, module);
   if (!inlined || !rewrites_quickly(*inlined)) return std::nullopt;
-  const bool short_loops = mark_short_loops(*inlined);
   spvtools::Optimizer optimizer(kSpirvEnvironment);
-  be_quiet(optimizer);
-  optimizer.RegisterPass(spvtools::CreateSSARewritePass());
+  add_rewriting_passes(optimizer, *inlined);
   // Constants are not folded here: exp2(-1) of this machine may be other bits than the device's.
-  if (short_loops) optimizer.RegisterPass(spvtools::CreateLoopUnrollPass(true));
   optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateBlockMergePass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());

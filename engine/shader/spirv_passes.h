@@ -50,8 +50,9 @@ std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Mod
 /// module of GLSL's memory model).
 Result<Words> with_held_indices(const Words& spirv);
 
-/// Asks LoopUnrollPass for the loops of a few turns, as long as not much code comes of it. False: there is none.
-bool mark_short_loops(Module& module);
+/// Behind the inlining passes, once unused pointers have gone: values in place of variables, straight code in place of
+/// loops of a few turns, which are marked in `inlined`, the module to be run.
+void add_rewriting_passes(spvtools::Optimizer& optimizer, Module& inlined);
 
 /// Values in place of functions, their arguments and variables, straight code in place of loops of a few turns, and
 /// blocks without those that are never entered.

@@ -156,6 +156,7 @@ class Uses {
     return found->second;
   }
 
+  /// What the instruction makes of them.
   Leaves carried_along(const Instruction& i, std::size_t at) {
     Leaves out(types_.size_of(i.type));
     const auto all_of = [&](std::uint32_t id) -> const Leaves& { return leaves_of(id, at); };
@@ -221,11 +222,8 @@ std::optional<Module> in_values(const Module& module, std::set<std::uint32_t>& t
   if (!inlined || !rewrites_quickly(*inlined)) return std::nullopt;
   for (const Loop& loop : find_loops(*inlined))
     if (loop.counting && loop.counting->turns.value_or(0) > 0) turning.insert(loop.header);
-  const bool short_loops = mark_short_loops(*inlined);
   spvtools::Optimizer optimizer(kSpirvEnvironment);
-  be_quiet(optimizer);
-  optimizer.RegisterPass(spvtools::CreateSSARewritePass());
-  if (short_loops) optimizer.RegisterPass(spvtools::CreateLoopUnrollPass(true));
+  add_rewriting_passes(optimizer, *inlined);
   optimizer.RegisterPass(spvtools::CreateCCPPass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
