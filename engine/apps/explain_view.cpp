@@ -9,7 +9,9 @@
 #include "apps/graph_view.h"
 #include "apps/setting_text.h"
 #include "apps/space_text.h"
+#include "core/file.h"
 #include "core/json_text.h"
+#include "core/key_finder.h"
 #include "core/table.h"
 #include "core/text.h"
 
@@ -76,8 +78,14 @@ std::string volume_steps(const SettingHistory& setting) {
 /// With the place where the value stands, when that is another script than the entry's.
 std::string preset_text(const SettingHistory& setting, const StackEntry& entry) {
   if (!setting.preset) return "";
-  const bool elsewhere = setting.place && setting.place->file != entry.file;
-  const std::string place = elsewhere ? fmt::format("{}:{}", setting.place->file, setting.place->line) : "";
+  std::string place;
+  if (setting.place && setting.place->file != entry.file) {
+    constexpr std::size_t kLargestScript = 1u << 20;
+    const auto text = read_file(setting.place->file, kLargestScript);
+    const int call = setting.place->line;
+    const int line = text ? line_of_key(*text, call, "extend", {entry.name, setting.name}) : call;
+    place = fmt::format("{}:{}", setting.place->file, line);
+  }
   const std::string kind = setting.kind == "fixed" ? "" : setting.kind;
   const std::string more = kind + (kind.empty() || place.empty() ? "" : ", ") + place;
   return setting.preset->text() + (more.empty() ? "" : " (" + more + ")");

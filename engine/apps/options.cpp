@@ -336,9 +336,10 @@ void AssumedPicture::add(CLI::App& command) {
       ->group("Picture");
 }
 
-Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
+Result<BuildContext> AssumedPicture::context(Preset& preset) const {
   AFTERGLOW_TRY(const Size assumed, parse_size(size));
   std::vector<std::string> known{"depth", "normal", "motion"};
+  BuildContext context = usual_context(preset, assumed, frame, fps);
   for (const auto& name : preset.needs())
     if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
   for (const auto& name : without)
@@ -346,7 +347,6 @@ Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
       return Error{
           ErrorKind::usage,         fmt::format("--without '{}': there is no such input", name), "", 0, join(known),
           nearest_name(name, known)};
-  BuildContext context = usual_context(preset, assumed, frame, fps);
   for (const auto& name : without) context.auxiliary.erase(name);
   return context;
 }

@@ -108,7 +108,7 @@ struct AssumedPicture {
   double frame = 1, fps = 24;
   std::vector<std::string> without;  ///< --without depth
   void add(CLI::App& command);
-  Result<BuildContext> context(const Preset& preset) const;
+  Result<BuildContext> context(Preset& preset) const;
 };
 
 }  // namespace afterglow

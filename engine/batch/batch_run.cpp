@@ -66,16 +66,15 @@ Result<void> follow_light(BatchRun& run, const Build& build, FrameLoop& loop) {
 }
 
 /// How many earlier frames the frames of this run need; empty when none depends on another. Where settings change from
-/// frame to frame some frames are asked.
+/// frame to frame all are asked: an effect that looks back may be active in one of them alone.
 Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
-  constexpr std::size_t kMostAsked = 64;
   const auto& frames = run.report.frames;
   Preset& preset = run.session->preset();
-  const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
+  const std::size_t asked = preset.may_change() ? frames.size() : 1;
   std::optional<int> most;
   const Size size = run.first ? loop.size_of(*run.first) : kUsualSize;
   for (std::size_t i = 0; i < asked; ++i) {
-    const double frame = frames[i * frames.size() / asked].job.frame;
+    const double frame = frames[i].job.frame;
     const BuildContext context = usual_context(preset, size, frame, run.request.loop.fps);
     // A picture alone is asked itself, and what is said of it is what runs.
     auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
@@ -110,12 +109,11 @@ Result<void> prepare_notes(BatchRun& run) {
   const BatchRequest& asked = run.request;
   if (!takes_notes(run)) return {};
   AFTERGLOW_TRY(const Inventory inventory, inventory_of(run, 1));
-  const std::string options =
-      options_text(asked.pixel_options) + execution_name(run.session->stack().choice().execution);
   Preset& preset = run.session->preset();
-  AFTERGLOW_TRY(const Hash look, look_hash(preset, inventory, options));
+  AFTERGLOW_TRY(const Hash look, look_hash(preset, inventory, options_text(asked.pixel_options)));
   run.notes.emplace(look, preset);
   if (!asked.resume) return {};
+  run.notes->made_by(execution_name(run.session->stack().choice().execution));
   if (const int left = remove_leftovers(run.report.frames))
     run.events.note(fmt::format("removed {} half-written files of runs that were killed", left));
   for (auto& frame : run.report.frames)
@@ -185,14 +183,11 @@ Result<void> run_frames(BatchRun& run) {
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   const double before = run.milliseconds();
   AFTERGLOW_TRY(run.session, Session::begin(asked.preset, opened, run.events.diagnostics));
-  // Of a picture alone nothing is asked that needs the device before it is being read.
-  const bool alone = opened.frames == 1 && !asked.resume && !asked.watch && asked.lock.empty() && asked.locked.empty();
-  if (!alone) {
-    AFTERGLOW_CHECK(run.session->ready());
-    run.first = first_header(jobs_of(frames, frames.size()), asked.loop.read);
-  }
+  // Others read their first pictures while it opens.
+  const bool asks_device = asked.resume || asked.watch || !asked.lock.empty() || !asked.locked.empty();
+  if (asks_device) AFTERGLOW_CHECK(run.session->ready());
+  if (asks_device || opened.frames > 1) run.first = first_header(jobs_of(frames, frames.size()), asked.loop.read);
   FrameLoopOptions options = asked.loop;
-  options.read.auxiliary = run.session->preset().needs();
   options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;
   if (!options.read.keep_negative) options.read.keep_negative = run.session->preset().keeps_negative();
   AFTERGLOW_CHECK(prepare_lock(run));

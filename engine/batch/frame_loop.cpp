@@ -69,9 +69,12 @@ Result<void> FrameLoop::run(Schedule& schedule) {
     if (next.empty()) next.push_back(begin_reading(frames[begun++]));
     auto reading = std::move(next.front());
     next.pop_front();
-    // The device opens, and shaders, pipelines and memory are made, while the first picture is read.
+    // The device opens, and shaders, pipelines and memory are made, while the first pictures are read.
     if (i == 0) {
+      if (!endless_ && overlap_.read > 1) begin_further(schedule, next, begun, overlap_.read - 1);
+      session_.begin_opening();
       if (auto ready = session_.ready(); !ready) return close(std::move(ready));
+      if (notes_) notes_->made_by(execution_name(session_.stack().choice().execution));
       auto prepared = reading->refused ? Result<void>() : session_.prepare(reading->request);
       if (!prepared && ends_run(prepared.error())) return close(fail(*reading->frame, std::move(prepared).error()));
     }
@@ -80,13 +83,19 @@ Result<void> FrameLoop::run(Schedule& schedule) {
       reading->picture.wait();
       reading->frame->steps.waited_read = milliseconds_since(waiting);
     }
-    while (overlap_ && next.size() < overlap_.read && (begun < frames.size() || fetch(schedule, begun)))
-      next.push_back(begin_reading(frames[begun++]));
+    begin_further(schedule, next, begun, overlap_.read);
     if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
       if (auto done = finish_writing(0); !done) return close(done.error());
   }
   return close({});
+}
+
+/// Begins to read further ones, until `next` has `most`; `begun`: how many have begun so far.
+void FrameLoop::begin_further(Schedule& schedule, std::deque<std::unique_ptr<Reading>>& next, std::size_t& begun,
+                              std::size_t most) {
+  while (next.size() < most && (begun < schedule.frames.size() || fetch(schedule, begun)))
+    next.push_back(begin_reading(schedule.frames[begun++]));
 }
 
 /// Frames of a stream come one by one. False: there is none of that place.
@@ -193,8 +202,6 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->index = scheduled.index;
   reading->pre_roll = scheduled.pre_roll;
   reading->restart = scheduled.restart;
-  reading->options = planner_.read_options(frame.job);
-  reading->options.memory = &memory_;
   if (scheduled.restart) begun_.reset();
   const bool follows = options_.histories && begun_;
   const double step = follows ? frame.job.frame - *begun_ : 1;
@@ -209,6 +216,8 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   begun_ = frame.job.frame;
+  reading->options = planner_.read_options(frame.job);
+  reading->options.memory = &memory_;
   reading->scaling = planner_.scaling_of(planned->header);
   reading->request = std::move(planned->request);
   const auto need = planner_.need_of(planned->header, *reading->request.build, frame.job);

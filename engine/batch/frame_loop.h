@@ -56,6 +56,8 @@ class FrameLoop {
   static bool runs(const Reading& reading);
   bool halves_suffice(const Reading& reading) const;
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
+  void begin_further(Schedule& schedule, std::deque<std::unique_ptr<Reading>>& next, std::size_t& begun,
+                     std::size_t most);
   Result<void> place_in_time(Reading& reading);
   std::size_t ahead() const;
   Result<void> process(std::unique_ptr<Reading> reading);

@@ -75,6 +75,7 @@ Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build
 
 ReadOptions FramePlanner::read_options(const FrameJob& job) const {
   ReadOptions options = options_.read;
+  options.auxiliary = session_.preset().needs();
   options.depth = job.depth;
   options.normal = job.normal;
   options.motion = job.motion;
@@ -105,20 +106,12 @@ FramePlanner::Shape FramePlanner::shape_of(const PictureHeader& header) const {
   return shape;
 }
 
-/// What is wanted of the picture with this header.
-Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const PictureHeader& header, double step,
-                                              bool restart) {
-  FrameRequest request;
+BuildContext FramePlanner::context_of(const FrameJob& job, const PictureHeader& header) const {
   BuildContext context;
   const Shape shape = shape_of(header);
-  const int finer = shape.finer;
   context.length_scale = shape.length_scale;
   context.size = shape.size();
-  if (options_.region) {
-    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, shape.data, shape.display));
-    request.region = Rect{part.x * finer, part.y * finer, part.width * finer, part.height * finer};
-  }
-  const auto& wanted = options_.read.auxiliary;
+  const auto wanted = session_.preset().needs();
   for (const auto& name : header.auxiliary)
     if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
   context.layers = header.layers;
@@ -127,6 +120,20 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
   context.fps = job.fps > 0 ? job.fps : options_.fps;
   context.time = job.time.value_or(job.frame / options_.fps);
   context.position = camera_position(header.facts->metadata);
+  return context;
+}
+
+/// What is wanted of the picture with this header.
+Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const PictureHeader& header, double step,
+                                              bool restart) {
+  FrameRequest request;
+  BuildContext context = context_of(job, header);
+  const Shape shape = shape_of(header);
+  const int finer = shape.finer;
+  if (options_.region) {
+    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, shape.data, shape.display));
+    request.region = Rect{part.x * finer, part.y * finer, part.width * finer, part.height * finer};
+  }
   context.step = request.step = step;
   context.restart = request.restart = restart;
   const auto codes = sink_.codes(job, header.has_alpha, header.facts.get());
@@ -141,9 +148,15 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
 Result<PlannedFrame> FramePlanner::plan(const FrameJob& job, double step, bool restart) {
   if (job.refused) return *job.refused;
   PlannedFrame planned;
-  auto header = read_header(job.input, read_options(job));
-  if (!header) return named(std::move(header).error(), job);
-  planned.header = std::move(*header);
+  // A header tells of the inputs that it was asked for. Which those are may depend on the frame, and on what it tells.
+  for (bool more = true; more;) {
+    auto header = read_header(job.input, read_options(job));
+    if (!header) return named(std::move(header).error(), job);
+    planned.header = std::move(*header);
+    auto asked = session_.preset().note_needs(context_of(job, planned.header));
+    if (!asked) return named(std::move(asked).error(), job);
+    more = *asked && !job.passing;
+  }
   auto request = request_of(job, planned.header, step, restart);
   if (!request) return named(std::move(request).error(), job);
   planned.request = std::move(*request);

@@ -85,6 +85,7 @@ class FramePlanner {
     Size size() const { return {data.width * finer, data.height * finer}; }
   };
   Shape shape_of(const PictureHeader& header) const;
+  BuildContext context_of(const FrameJob& job, const PictureHeader& header) const;
   Result<FrameRequest> request_of(const FrameJob& job, const PictureHeader& header, double step, bool restart);
 
   Session& session_;

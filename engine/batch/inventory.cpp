@@ -106,7 +106,7 @@ std::optional<PictureHeader> first_header(const std::vector<const FrameJob*>& jo
   return std::nullopt;
 }
 
-std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
+std::vector<BuildContext> usual_contexts(Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
                                          const std::optional<PictureHeader>& first) {
   std::vector<BuildContext> out;
   const Size size = first ? first->data_window.size() : kUsualSize;

@@ -41,7 +41,7 @@ inline constexpr Size kUsualSize{1920, 1080};  ///< of pictures whose size nobod
 /// Of the first of these whose header can be read; nothing of it stays open.
 std::optional<PictureHeader> first_header(const std::vector<const FrameJob*>& jobs, ReadOptions options);
 /// The frames as they usually are, in the size of the first: see usual_context.
-std::vector<BuildContext> usual_contexts(const Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
+std::vector<BuildContext> usual_contexts(Preset& preset, const std::vector<const FrameJob*>& jobs, double fps,
                                          const std::optional<PictureHeader>& first);
 
 /// Hashes of files, each read once. Of those that the preset has read it is what it read then, whatever lies there by

@@ -24,7 +24,8 @@
 
 namespace afterglow {
 
-/// Hash of the scripts, the shaders, and `options` (a text with every option that changes pixels). Errors: io.
+/// Hash of the scripts, the shaders, and `options` (a text with every option that changes pixels but the execution).
+/// Errors: io.
 Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const std::string& options);
 
 /// Writes and reads what frames of a preset, which must outlive it, are made of. Not thread-safe, but for
@@ -32,7 +33,11 @@ Result<Hash> look_hash(const Preset& preset, const Inventory& inventory, const s
 class FrameNotes {
  public:
   FrameNotes(const Hash& look, const Preset& preset)
-      : look_(look), path_(preset.path()), names_(path_), hashes_(preset) {}
+      : sources_(look), path_(preset.path()), names_(path_), hashes_(preset) {}
+
+  /// How the device executes, by name: a part of what all frames are made of. To be told before the rest is asked, but
+  /// for `inputs_of`.
+  void made_by(const std::string& execution) { look_ = Hasher().add(sources_.hex()).add(execution).finish(); }
 
   /// Size and time of every file that the output is made from. To be asked before the frame is read, and of the frames
   /// of a sequence by number: each looks at its own files, and those of earlier frames are as those frames found them.
@@ -47,7 +52,7 @@ class FrameNotes {
   bool is_same(const std::string& line, const FrameJob& job);
   std::filesystem::path file_of(const std::string& name) const;
   std::string content_or_none(const std::filesystem::path& file);
-  Hash look_;
+  Hash sources_, look_{};
   SearchPath path_;
   PortableNames names_;
   FileHashes hashes_;

@@ -10,7 +10,9 @@
 namespace afterglow {
 namespace fs = std::filesystem;
 
-fs::path own_file() {
+namespace {
+
+fs::path find_own_file() {
   Dl_info info{};
   link_map* map = nullptr;
   const auto* here = reinterpret_cast<const void*>(&own_file);
@@ -20,6 +22,13 @@ fs::path own_file() {
     file = map->l_name;
   file = fs::canonical(file, ec);
   return ec ? fs::path() : file;
+}
+
+}  // namespace
+
+fs::path own_file() {
+  static const fs::path found = find_own_file();
+  return found;
 }
 
 bool is_in_build_folder() {

@@ -23,7 +23,7 @@ EntryShape shape_of_entry(const StackEntry& entry, const EntryHistory& history) 
   if (entry.mask) shape.mask = entry.mask->text() + "\n";
   for (const auto& setting : history.composition)
     add_setting(setting.name.starts_with("mask.") ? shape.mask : shape.said, setting);
-  if (entry.members == 0) shape.place = fmt::format("{} {}", entry.at, entry.order);
+  shape.place = entry.members == 0 ? fmt::format("{} {}", entry.at, entry.order) : entry.at;
   return shape;
 }
 

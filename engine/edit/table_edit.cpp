@@ -169,8 +169,9 @@ std::size_t comments_begin(const Layout& layout, const Item& item, std::size_t l
     const std::size_t above = layout.line_begin(begin - (layout.between(begin - 2, begin) == "\r\n" ? 2 : 1));
     const auto line = layout.between(above, begin);
     const std::size_t first = line.find_first_not_of(" \t");
-    // A comment of one line: one that goes over several may not be cut.
-    if (above < least || first == std::string_view::npos || !line.substr(first).starts_with("--") ||
+    // A comment of one line: one that goes over several, which may end in "--]]", may not be cut.
+    const bool of_several = line.find("]]") != std::string_view::npos || line.find("]=") != std::string_view::npos;
+    if (above < least || first == std::string_view::npos || of_several || !line.substr(first).starts_with("--") ||
         line.substr(first).starts_with("--["))
       break;
     begin = above;

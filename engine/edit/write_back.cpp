@@ -35,7 +35,7 @@ struct Task {
 };
 
 /// How the place of each edit is found. `first`: the first that can be written to, all are checked together; `tried`:
-/// each place by loading the preset with that edit alone.
+/// each place by loading the preset with that edit alone. Where none can be written to, both say the same.
 enum class Places { first, tried };
 
 class Rewriter {
@@ -101,14 +101,10 @@ class Rewriter {
     const auto places = places_of(lua_, preset_, file_, task.edit);
     if (!places) return places.error();
     std::optional<Error> reason;
-    if (places_ == Places::first) reason = Error{ErrorKind::script, "no place can be written to"};
     bool expression = false;
     for (const Place& place : *places) {
       task.place = place;
-      if (places_ == Places::first) {
-        if (takes(task)) return {};
-        continue;
-      }
+      if (places_ == Places::first && takes(task)) return {};
       auto failure = try_place(task, places->size() == 1);
       if (!failure) return {};
       // An expression says most; else the first place, which fits best.
@@ -297,7 +293,7 @@ Result<Rewrite> rewrite_preset(const std::filesystem::path& file, const std::str
   AFTERGLOW_TRY(const Preset preset, load_text(file, before, options));
   if (edits.size() > 1) {  // in one load of the preset, where that does what all of them want
     auto rewrite = Rewriter(file.string(), before, options, preset, Places::first).run(edits);
-    if (rewrite && rewrite->refused.empty()) return rewrite;
+    if (rewrite) return rewrite;
   }
   return Rewriter(file.string(), before, options, preset, Places::tried).run(edits);
 }

@@ -21,10 +21,17 @@ std::string image_name(const Graph& graph, ImageId id) {
   return id == kNoImage ? std::string() : graph.images[static_cast<std::size_t>(id)].name;
 }
 
-/// Images have other ids where an entry before makes more of them; their names stay.
+Hash data_hash(const Graph& graph, ImageId id) {
+  const auto& data = graph.images[static_cast<std::size_t>(id)].data;
+  return data ? data->hash : Hash{};
+}
+
+/// Images have other ids where an entry before makes more of them; their names stay, and the pixels that they came
+/// with.
 bool same_inputs(const Graph& a, const Pass& p, const Graph& b, const Pass& q) {
   return std::ranges::equal(p.inputs, q.inputs, [&](const PassInput& x, const PassInput& y) {
-    return x.name == y.name && x.pixelwise == y.pixelwise && image_name(a, x.image) == image_name(b, y.image);
+    return x.name == y.name && x.pixelwise == y.pixelwise && image_name(a, x.image) == image_name(b, y.image) &&
+           data_hash(a, x.image) == data_hash(b, y.image);
   });
 }
 

@@ -92,6 +92,14 @@ void Player::State::want_pictures() {
   ahead->want(keys);
 }
 
+/// Inputs that depend on the frame are known before its picture is read.
+void Player::State::ask_frames(Preset& preset) const {
+  constexpr int kMostFrames = 1000;
+  const int last = std::min(transport.last(), transport.first() + kMostFrames - 1);
+  for (int position = transport.first(); position <= last; ++position)
+    if (!preset.note_needs(context(position, 1))) return;  // told when it is evaluated
+}
+
 /// What the present stacks want of pictures: when they want more, or other colours, pictures are read again. Both looks
 /// see the same ones, as the first has them read.
 void Player::State::follow_needs() {
@@ -100,9 +108,11 @@ void Player::State::follow_needs() {
   };
   Stack *const own = stack_of(first), *const other = stack_of(second);
   std::set<std::string> auxiliary;
-  for (Stack* stack : {own, other})
-    if (stack)
-      for (const auto& name : stack->preset().needs()) auxiliary.insert(name);
+  for (Stack* stack : {own, other}) {
+    if (!stack) continue;
+    ask_frames(stack->preset());
+    for (const auto& name : stack->preset().needs()) auxiliary.insert(name);
+  }
   bool others = false;
   {
     const std::lock_guard lock(mutex);

@@ -79,6 +79,7 @@ struct Player::State {
   void tell_errors();
   void watch_finite();
   void take_finite();
+  void ask_frames(Preset& preset) const;
   void follow_needs();
   Result<bool> show_due(double now);
   Result<bool> time_a_kernel(bool changed, Step& step);

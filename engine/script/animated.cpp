@@ -16,8 +16,9 @@
 namespace afterglow::script {
 namespace {
 
-constexpr std::size_t kMaxCurves = 4096;          // of one state
-constexpr std::size_t kMaxCurveKeys = 64 * 1024;  // of all its curves: they live outside of Lua's memory
+constexpr std::size_t kMaxCurves = 4096;                // of one state
+constexpr std::size_t kMaxKeysOfSettings = 256 * 1024;  // of the curves that settings have
+constexpr std::size_t kMaxCurveKeys = 64 * 1024;        // of all its curves: they live outside of Lua's memory
 
 // ---- fx.curve
 
@@ -149,6 +150,11 @@ Result<Animated> check_animated(lua_State* lua, const std::string& full_name, co
     return Error{ErrorKind::script, fmt::format("{} cannot be a curve: it has nothing between its values", full_name),
                  "", 0, allowed_text(schema) + ", a function of t"};
   const DeclaredCurve& declared = Runtime::of(lua).curves[static_cast<std::size_t>(given.curve)];
+  Runtime& runtime = Runtime::of(lua);
+  runtime.keys_of_settings += declared.keys.size();
+  if (runtime.keys_of_settings > kMaxKeysOfSettings)
+    return Error{ErrorKind::script,
+                 fmt::format("{}: the curves of all settings have more than {} keys", full_name, kMaxKeysOfSettings)};
   Curve& curve = animated.curve.emplace();
   curve.ease = declared.ease;
   curve.in_seconds = declared.in_seconds;
@@ -160,10 +166,10 @@ Result<Animated> check_animated(lua_State* lua, const std::string& full_name, co
   return animated;
 }
 
-SettingValue evaluate(lua_State* lua, const Animated& given, const std::string& full_name, const SettingSchema& schema,
-                      const BuildContext& context) {
-  if (given.curve) return given.curve->value(given.curve->in_seconds ? context.time : context.frame);
-  if (!given.function.set()) return given.fixed;
+namespace {
+
+SettingValue value_of_function(lua_State* lua, const Animated& given, const std::string& full_name,
+                               const SettingSchema& schema, const BuildContext& context) {
   SettingValue value = call_function(lua, given, full_name, schema, context);
   const SettingValue again = call_function(lua, given, full_name, schema, context);
   if (value == again) return value;
@@ -171,6 +177,37 @@ SettingValue evaluate(lua_State* lua, const Animated& given, const std::string& 
                                           full_name, value.text(), again.text()));
   locate_function(lua, given.function, error.error);
   throw error;
+}
+
+struct Asked {
+  const Animated& given;
+  const std::string& full_name;
+  const SettingSchema& schema;
+  const BuildContext& context;
+  SettingValue value;
+};
+
+int ask_function(lua_State* lua) {
+  Asked& asked = *static_cast<Asked*>(lua_touserdata(lua, 1));
+  asked.value = value_of_function(lua, asked.given, asked.full_name, asked.schema, asked.context);
+  return 0;
+}
+
+}  // namespace
+
+SettingValue evaluate(lua_State* lua, const Animated& given, const std::string& full_name, const SettingSchema& schema,
+                      const BuildContext& context) {
+  if (given.curve) return given.curve->value(given.curve->in_seconds ? context.time : context.frame);
+  if (!given.function.set()) return given.fixed;
+  const Runtime& runtime = Runtime::of(lua);
+  if (!runtime.provisional) return value_of_function(lua, given, full_name, schema, context);
+  Asked asked{given, full_name, schema, context, schema.default_value};
+  lua_pushcfunction(lua, (&native<ask_function, "">));
+  lua_pushlightuserdata(lua, &asked);
+  if (lua_pcall(lua, 1, 0, 0) == LUA_OK) return asked.value;
+  lua_pop(lua, 1);
+  runtime.box->charge(0);  // what was spent stays so
+  return schema.default_value;
 }
 
 }  // namespace afterglow::script

@@ -114,10 +114,11 @@ std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels,
 
 void count_data(Runtime& runtime, const ImageData* data) {
   if (!data) return;
-  runtime.assets.bytes += data->pixels.size() * sizeof(float);
-  if (runtime.assets.bytes > kMaxBytes)
+  const std::size_t all = runtime.assets.bytes + data->pixels.size() * sizeof(float);
+  if (all > kMaxBytes)
     throw failure(fmt::format("'{}' and what was read before take more than {} MiB", data->file.filename().string(),
                               kMaxBytes >> 20));
+  runtime.assets.bytes = all;
 }
 
 std::optional<Hash> content_seen(const Runtime& runtime, const fs::path& file, std::size_t limit) {

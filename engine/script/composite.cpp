@@ -49,6 +49,11 @@ bool moves(const MaskRun& mask) {
          });
 }
 
+bool inputs_move(const Runtime& runtime, const MaskRun& mask) {
+  if (mask.a) return inputs_move(runtime, *mask.a) || inputs_move(runtime, *mask.b);
+  return mask.named && moves(mask) && asks_by_function(runtime, *mask.named);
+}
+
 std::shared_ptr<const EntryMask> shown(const MaskRun& mask) {
   auto out = std::make_shared<EntryMask>();
   out->kind = mask.kind;
@@ -83,11 +88,13 @@ std::optional<double> constant(lua_State* lua, const MaskRun& mask, Inactive& no
   return {};
 }
 
-void add_inputs(lua_State* lua, const MaskRun& mask, bool optional_too, std::vector<std::string>& names) {
-  if (mask.a) add_inputs(lua, *mask.a, optional_too, names), add_inputs(lua, *mask.b, optional_too, names);
-  if (!mask.named || why_inactive(lua, *mask.named)) return;
+void add_inputs(lua_State* lua, const MaskRun& mask, MaskInputs which, std::vector<std::string>& names) {
+  if (mask.a) add_inputs(lua, *mask.a, which, names), add_inputs(lua, *mask.b, which, names);
+  if (!mask.named) return;
+  const bool later = which == MaskInputs::used_later && moves(mask);
+  if (!later && why_inactive(lua, *mask.named)) return;
   std::vector<std::string> inputs = needed_inputs(lua, *mask.named);
-  if (optional_too)
+  if (which != MaskInputs::needed)
     for (auto& name : optional_inputs(lua, *mask.named)) inputs.push_back(std::move(name));
   for (auto& name : inputs)
     if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
@@ -134,6 +141,7 @@ class MaskBuilder {
     graph_.begin(run.entry, std::move(inputs), straight, "mask.");
     const ImageRef image = run_build(lua_, run, graph_, source_);
     graph_.end();
+    graph_.tell_warnings(*Runtime::of(lua_).box->diagnostics);
     if (image.id == source_.id) return 0.0;  // g:skip
     return image;
   }
@@ -242,8 +250,12 @@ std::optional<Inactive> why_unseen(lua_State* lua, const EntryRun& run) {
   return none;
 }
 
-void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names) {
-  if (run.mask) add_inputs(lua, *run.mask, optional_too, names);
+bool mask_inputs_move(const Runtime& runtime, const EntryRun& run) {
+  return run.mask && inputs_move(runtime, *run.mask);
+}
+
+void add_mask_inputs(lua_State* lua, const EntryRun& run, MaskInputs which, std::vector<std::string>& names) {
+  if (run.mask) add_inputs(lua, *run.mask, which, names);
 }
 
 ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,

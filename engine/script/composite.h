@@ -29,8 +29,13 @@ bool composition_moves(const EntryRun& run);
 /// Why nothing of the entry's result would be seen; empty when something may be.
 std::optional<Inactive> why_unseen(lua_State* lua, const EntryRun& run);
 
-/// Auxiliary inputs that its masks need, behind `names`; `optional_too`: and those that they can use.
-void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names);
+/// Which auxiliary inputs of masks are meant: those without which they select nothing, also those that they can use, or
+/// also those of masks that select nothing now, but whose settings move.
+enum class MaskInputs { needed, used, used_later };
+/// May other frames ask for others?
+bool mask_inputs_move(const Runtime& runtime, const EntryRun& run);
+/// Puts them behind `names`.
+void add_mask_inputs(lua_State* lua, const EntryRun& run, MaskInputs which, std::vector<std::string>& names);
 
 /// `image`, which the entry made of `source`, put over it.
 ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,

@@ -55,7 +55,8 @@ void read_place(TableReader& table, DeclaredEntry& declared) {
   StackEntry& entry = declared.entry;
   const auto at = table.text("at");
   const auto order = table.integer("order");
-  declared.placed = declared.placed || at || order;
+  declared.says_at = declared.says_at || at;
+  declared.says_order = declared.says_order || order;
   entry.at = at.value_or(entry.at);
   if (std::find(injection_points().begin(), injection_points().end(), entry.at) == injection_points().end())
     table.fail(failure(fmt::format("unknown injection point '{}'", tidy_message(entry.at, 60)), {"at"},

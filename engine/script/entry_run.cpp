@@ -129,6 +129,11 @@ std::optional<Inactive> why_inactive(lua_State* lua, const EntryRun& run) {
   return Inactive{given ? tidy_message(reason.text, 200) : "its settings leave the picture as it is", told};
 }
 
+bool asks_by_function(const Runtime& runtime, const EntryRun& run) {
+  const Effect& effect = runtime.effects[static_cast<std::size_t>(run.effect)];
+  return effect.needs.function.set() || effect.optional.function.set();
+}
+
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run) {
   return input_names(lua, run, effect_of(lua, run).needs, "needs");
 }

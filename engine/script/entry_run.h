@@ -48,6 +48,8 @@ struct Inactive {
 };
 /// Empty when the effect, or the mask, is active with these settings.
 std::optional<Inactive> why_inactive(lua_State* lua, const EntryRun& run);
+/// Do its inputs depend on its settings?
+bool asks_by_function(const Runtime& runtime, const EntryRun& run);
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run);
 std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run);
 /// What `idle` says about an effect that was built on `source`: the largest red, green or blue of it up to which the

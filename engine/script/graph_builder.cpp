@@ -67,6 +67,14 @@ void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> input
   open_histories_.clear();
 }
 
+void GraphBuilder::add_idle(const ImageRef& source, const ImageRef& output, double limit) {
+  const auto channels = [&](const ImageRef& image) {
+    return graph_.images[static_cast<std::size_t>(image.id)].channels;
+  };
+  if (channels(source) != channels(output)) return;  // the one cannot stand for the other
+  graph_.idle.push_back({entry_->name, source.id, output.id, limit});
+}
+
 Graph GraphBuilder::finish(ImageId result) {
   graph_.result = result;
   drop_unread_histories(graph_);

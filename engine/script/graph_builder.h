@@ -104,17 +104,18 @@ class GraphBuilder {
   /// What an author should know about the alpha of what an effect made; none: nothing.
   std::optional<std::string> fixed_alpha(const ImageRef& made) const;
   /// What authors should know about the shaders of the present entry.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  void tell_warnings(Diagnostics& diagnostics) const {
+    for (const auto& warning : warnings_) diagnostics.warn_once(warning, warning);
+  }
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
   const std::optional<std::string>& skip_reason() const { return skip_reason_; }
 
   void add_skipped(std::string name, std::string reason) {
     graph_.skipped.push_back({std::move(name), std::move(reason)});
   }
-  /// The present entry makes `output` of `source`, which stay equal while nothing of `source` is above `limit`.
-  void add_idle(const ImageRef& source, const ImageRef& output, double limit) {
-    graph_.idle.push_back({entry_->name, source.id, output.id, limit});
-  }
+  /// The present entry makes `output` of `source`, which stay equal while nothing of `source` is above `limit`: those
+  /// of as many channels.
+  void add_idle(const ImageRef& source, const ImageRef& output, double limit);
   Graph finish(ImageId result);
 
  private:

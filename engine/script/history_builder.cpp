@@ -34,7 +34,8 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
     fail_history(history, fmt::format("more than {} histories", kMostHistories));
   if (request.first && request.first->build != build_)
     fail_history(history, "'first' is an image of another run of build", {"first"});
-  if (request.first && history_of_previous(graph_, request.first->id))
+  const History* const looked_back = request.first ? history_of_previous(graph_, request.first->id) : nullptr;
+  if (looked_back && looked_back->effect == history.effect)
     fail_history(history, "'first' is itself an image of an earlier frame", {"first"},
                  "an image of this frame, numbers");
   if (!request.size && !request.first)
@@ -58,9 +59,10 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
   if (request.pre_roll && !(pre_roll >= 0 && pre_roll <= kMostPreRoll && pre_roll == std::floor(pre_roll)))
     fail_history(history, fmt::format("pre_roll = {} is no number of frames", number_text(pre_roll)), {"pre_roll"},
                  fmt::format("integer 0…{}", kMostPreRoll));
+  // What another effect looks back at may be this one's source: to it that is an image of this frame.
+  if (request.first) history.first = looked_back ? copy_of(request.first->id, channels, place) : request.first->id;
   history.previous = add_image(history.name, size, -1);
   graph_.images.back().channels = channels;
-  history.first = request.first ? request.first->id : kNoImage;
   history.initial = request.initial;
   // What is not kept reads as of passes: 0, an alpha of 1.
   if (channels < 4) history.initial[2] = 0, history.initial[3] = 1;

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kMaxItems = 1024;    // of one state
 constexpr std::size_t kMaxMembers = 8192;  // of all groups
 constexpr int kMaxDepth = 32;              // of lists in lists
+constexpr std::uint64_t kItemCost = 16;    // instructions of the sandbox
 
 void add_group(const DeclaredGroup& group, std::vector<DeclaredEntry>& entries) {
   entries.push_back(group.entry);
@@ -31,6 +32,7 @@ class ItemReader {
       : lua_(lua), table_(table), entries_(entries), volumes_(volumes) {}
 
   void read(const TableReader& list, const KeyPath& place, int depth) {
+    Runtime::of(lua_).box->charge(kItemCost * (list.keys().size() + 1));
     for (const auto& key : list.keys()) {
       KeyPath at = place;
       at.push_back(key.name);
@@ -65,8 +67,13 @@ class ItemReader {
     } else if (lua_isboolean(lua_, -1) && !lua_toboolean(lua_, -1)) {
       return;
     } else if (lua_istable(lua_, -1) && depth < kMaxDepth) {
+      const void* const own = lua_topointer(lua_, -1);
+      if (std::ranges::find(around_, own) != around_.end())
+        throw failure(fmt::format("{}: position {} is a list that holds itself", table_.what(), key.position), at);
+      around_.push_back(own);
       const TableReader list(lua_, -1, table_.what());
       read(list, at, depth + 1);
+      around_.pop_back();
     } else if (to_object<Handle>(lua_, -1, kStackKind)) {
       table_.fail(failure(place + " a stack, which goes into fx.group { … } here", at, allowed));
     } else if (to_object<Handle>(lua_, -1, kEffectKind)) {
@@ -106,6 +113,7 @@ class ItemReader {
   TableReader& table_;
   std::vector<DeclaredEntry>& entries_;
   std::vector<DeclaredVolume>* volumes_;
+  std::vector<const void*> around_{};  ///< lists that the one being read is in
 };
 
 std::ptrdiff_t point_index(const std::string& at) {
@@ -133,12 +141,11 @@ Entries sorted(Entries entries, int depth) {
     const std::ptrdiff_t middle = head.entry.middle, members = head.entry.members;
     Entries first = sorted(Entries(from, from + middle), depth + 1);
     Entries rest = sorted(Entries(from + middle, from + members), depth + 1);
-    if (!head.placed)
-      for (const Entries* part : {&first, &rest})
-        if (!part->empty() && (part == &first || first.empty() || runs_before(part->front().entry, head.entry))) {
-          head.entry.at = part->front().entry.at;
-          head.entry.order = part->front().entry.order;
-        }
+    const StackEntry* earliest = nullptr;
+    for (const Entries* part : {&first, &rest})
+      if (!part->empty() && (!earliest || runs_before(part->front().entry, *earliest))) earliest = &part->front().entry;
+    if (earliest && !head.says_at) head.entry.at = earliest->at;
+    if (earliest && !head.says_order) head.entry.order = earliest->order;
     i += static_cast<std::size_t>(members) + 1;
     Entries unit{std::move(head)};
     for (Entries* part : {&first, &rest}) std::ranges::move(*part, std::back_inserter(unit));

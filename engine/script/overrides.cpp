@@ -161,7 +161,8 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, Runtime& runt
     if (given.setting == "enabled") entry.enabled = value.number[0] != 0;
     if (given.setting == "order") entry.order = static_cast<int>(value.number[0]);
     if (given.setting == "at") entry.at = value.choice;
-    if (given.setting == "order" || given.setting == "at") declared.placed = true;
+    declared.says_order = declared.says_order || given.setting == "order";
+    declared.says_at = declared.says_at || given.setting == "at";
     if (given.setting == "blend") declared.blend.overridden = value;
     if (given.setting == "opacity") declared.opacity.overridden = value;
     if (given.setting == "mask") {

@@ -70,7 +70,11 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   std::stable_sort(surroundings.volumes.begin(), surroundings.volumes.end(),
                    [](const auto& a, const auto& b) { return a.priority < b.priority; });
   may_change = script::may_change(runs, surroundings);
-  resolve(lua, {});
+  BuildContext assumed;
+  assumed.time = assumed.frame / assumed.fps;
+  runtime->provisional = true;
+  resolve(lua, assumed);
+  runtime->provisional = false;
   loaded = entries;
   loaded_so = explanation;
 }
@@ -97,11 +101,14 @@ void Preset::State::scale_lengths(lua_State* lua, const BuildContext& context) {
   }
 }
 
+bool Preset::State::note(const std::vector<std::string>& inputs) {
+  const std::size_t before = needs.size();
+  for (const auto& input : inputs)
+    if (std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
+  return needs.size() > before;
+}
+
 void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
-  const auto note = [&](const std::vector<std::string>& names) {
-    for (const auto& input : names)
-      if (std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
-  };
   for (const auto& run : runs) {
     current = &run.entry;
     const bool changes = script::may_change(run, surroundings);
@@ -109,12 +116,29 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
     note(needed_inputs(lua, run));
     note(optional_inputs(lua, run));
     std::vector<std::string> of_masks;
-    add_mask_inputs(lua, run, true, of_masks);
+    add_mask_inputs(lua, run, MaskInputs::used_later, of_masks);
     note(of_masks);
     // Other settings may ask for other inputs: what an effect asks for by a function cannot be known before.
-    const Effect& effect = runtime->effects[static_cast<std::size_t>(run.effect)];
-    if (changes && (effect.needs.function.set() || effect.optional.function.set())) note(auxiliary_inputs());
+    const bool effect_moves = changes && asks_by_function(*runtime, run);
+    if (effect_moves) note(auxiliary_inputs());
+    needs_move = needs_move || effect_moves || mask_inputs_move(*runtime, run);
   }
+}
+
+bool Preset::State::note_needs_now(lua_State* lua, const StackEntry*& current) {
+  bool more = false;
+  for (const auto& run : runs) {
+    if (!run.entry.enabled || !script::may_change(run, surroundings)) continue;
+    current = &run.entry;
+    std::vector<std::string> inputs;
+    if (!why_inactive(lua, run)) {
+      inputs = needed_inputs(lua, run);
+      for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
+    }
+    add_mask_inputs(lua, run, MaskInputs::used, inputs);
+    more = note(inputs) || more;
+  }
+  return more;
 }
 
 Preset::Preset(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -177,6 +201,19 @@ std::size_t Preset::memory_used() const {
   return state_->runtime->box->memory_used();
 }
 
+Result<bool> Preset::note_needs(const BuildContext& context) {
+  State& state = *state_;
+  if (!state.needs_move) return false;
+  bool more = false;
+  const StackEntry* current = nullptr;
+  auto error = state.runtime->box->run(state.file, [&](lua_State* lua) {
+    state.resolve(lua, context);
+    more = state.note_needs_now(lua, current);
+  });
+  if (error) return with_entry(std::move(*error), current);
+  return more;
+}
+
 Result<std::vector<std::string>> Preset::named_files(const BuildContext& context) {
   State& state = *state_;
   std::vector<std::string> names;
@@ -204,8 +241,9 @@ Result<std::vector<EntrySpace>> Preset::spaces() {
   return out;
 }
 
-BuildContext usual_context(const Preset& preset, Size size, double frame, double fps) {
+BuildContext usual_context(Preset& preset, Size size, double frame, double fps) {
   BuildContext out{.size = size, .auxiliary = {}, .frame = frame, .time = frame / fps, .fps = fps};
+  (void)preset.note_needs(out);  // what is wrong there is wrong when it is evaluated
   for (const auto& name : preset.needs()) out.auxiliary[name] = size;
   return out;
 }

@@ -152,8 +152,8 @@ class Preset {
   Preset& operator=(Preset&&) noexcept;
   ~Preset();
 
-  const std::string& name() const;          ///< of the stack
-  const std::string& input_space() const;   ///< `input_space` of the stack; empty: none
+  const std::string& name() const;         ///< of the stack
+  const std::string& input_space() const;  ///< `input_space` of the stack; empty: none
   /// `gamut` of the stack: whether components below 0 stay, which colours outside of Rec.709 have; none: not said.
   std::optional<bool> keeps_negative() const;
   std::optional<double> max_error() const;  ///< `max_error` of the stack
@@ -173,9 +173,12 @@ class Preset {
   bool detailed() const;
   /// The light in which each entry runs, in the order of execution, with the settings of the last evaluation.
   Result<std::vector<EntrySpace>> spaces();
-  /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could
-  /// ask for.
+  /// Names of auxiliary inputs that enabled, active effects and masks ask for; where settings may change, those that
+  /// they could ask for, as far as is known: layers that depend on the frame come with it (`note_needs`, `evaluate`).
   std::vector<std::string> needs() const;
+  /// May `needs` of some looks grow? Then asks with the settings of this frame. True: it wants inputs that were not
+  /// known.
+  Result<bool> note_needs(const BuildContext& context);
   /// Where names are looked up; a preset that extends another has that one's folder in it too.
   const SearchPath& path() const;
   /// Every script that was read: preset, library, effects, modules. (What frames are made of besides: Build::depends.)
@@ -202,7 +205,7 @@ class Preset {
 
 /// A frame as they usually are: of a picture of this size that has everything the preset asks for, at the time that
 /// `frame` has at `fps` pictures a second.
-BuildContext usual_context(const Preset& preset, Size size, double frame, double fps);
+BuildContext usual_context(Preset& preset, Size size, double frame, double fps);
 
 /// May a new effect be called so? Errors (usage): no identifier, a word of Lua or of the library, taken.
 Result<void> check_new_effect_name(const std::string& name, const SearchPath& path);

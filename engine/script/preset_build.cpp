@@ -35,7 +35,9 @@ std::string layers_text(const std::vector<std::string>& missing, const BuildCont
     if (!name.starts_with(kLayerPrefix)) continue;
     if (context.layers.empty()) return "; the picture has no named layers";
     std::vector<std::string> known = context.layers;
-    const std::string nearest = nearest_name(name.substr(kLayerPrefix.size()), known);
+    const std::string wanted = name.substr(kLayerPrefix.size());
+    const bool is_there = std::ranges::find(known, wanted) != known.end();
+    const std::string nearest = is_there ? "" : nearest_name(wanted, known);
     if (known.size() > kMost) known.resize(kMost), known.emplace_back("…");
     return fmt::format("; the picture has the layers {}{}", join(known),
                        nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
@@ -68,7 +70,7 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
   graph.begin(entry, std::move(inputs), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
   const ImageRef image = run_build(lua, run, graph, source);
   graph.end();
-  for (const auto& warning : graph.warnings()) diagnostics.warn_once(warning, warning);
+  graph.tell_warnings(diagnostics);
   if (image.id == source.id) {
     graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
     return image;
@@ -94,7 +96,7 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
   }
   std::vector<std::string> inputs, missing;
   if (!why_inactive(lua, run)) inputs = needed_inputs(lua, run);
-  add_mask_inputs(lua, run, false, inputs);
+  add_mask_inputs(lua, run, MaskInputs::needed, inputs);
   for (const auto& input : inputs)
     if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
   if (missing.empty()) return false;
@@ -151,6 +153,7 @@ Result<Graph> Preset::State::build(const BuildContext& context, Diagnostics& dia
     scale_lengths(lua, context);
     graph.scale_lengths(length_scale);
     if (may_change) resolve(lua, context);
+    if (needs_move) note_needs_now(lua, current);
     warn_without_position(*explanation, diagnostics);
     image = build_entries(lua, 0, runs.size(), graph, image, current, diagnostics);
   });

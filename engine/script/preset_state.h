@@ -31,6 +31,7 @@ struct Preset::State {
   std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
   std::shared_ptr<const Explanation> loaded_so;            // of that
   std::vector<std::string> needs;
+  bool needs_move = false;  ///< other frames may ask for others
   Surroundings surroundings;
   std::shared_ptr<const Explanation> explanation;  // of that
   bool may_change = false;
@@ -40,7 +41,11 @@ struct Preset::State {
   void load(lua_State* lua, const PresetOptions& options);
   void resolve(lua_State* lua, const BuildContext& context);
   void scale_lengths(lua_State* lua, const BuildContext& context);
+  /// What may be asked for in any frame, as far as it is known before.
   void note_needs(lua_State* lua, const StackEntry*& current);
+  /// What settings as they are now ask for; true: that is more than was known.
+  bool note_needs_now(lua_State* lua, const StackEntry*& current);
+  bool note(const std::vector<std::string>& inputs);
   /// Runs the effects' functions once.
   Result<Graph> build(const BuildContext& context, Diagnostics& diagnostics);
   /// What is said of an entry whose effect makes another graph when the frame is built again, with another frame in

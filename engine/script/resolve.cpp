@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
 #include "script/composite.h"
 
@@ -57,14 +59,15 @@ EntryHistory start_of(lua_State* lua, const EntryRun& run, const BuildContext& c
   return entry;
 }
 
+using Places = std::unordered_map<std::string_view, std::size_t>;  // of entries, by name
+
 void blend_in(lua_State* lua, const DeclaredVolume& volume, const VolumeState& state, const std::vector<EntryRun>& runs,
-              const BuildContext& context, std::vector<EntryHistory>& entries) {
+              const Places& places, const BuildContext& context, std::vector<EntryHistory>& entries) {
   for (const auto& target : volume.targets) {
-    const auto run =
-        std::find_if(runs.begin(), runs.end(), [&](const auto& r) { return r.entry.name == target.entry; });
-    if (run == runs.end()) continue;
-    const SettingSchema& schema = schema_of(lua, *run).settings[target.setting];
-    SettingHistory& setting = entries[static_cast<std::size_t>(run - runs.begin())].settings[target.setting];
+    const auto place = places.find(target.entry);
+    if (place == places.end()) continue;
+    const SettingSchema& schema = schema_of(lua, runs[place->second]).settings[target.setting];
+    SettingHistory& setting = entries[place->second].settings[target.setting];
     VolumeStep step{.volume = volume.name, .factor = state.factor};
     step.value =
         evaluate(lua, target.value, fmt::format("{}: {}.{}", volume.name, target.entry, schema.name), schema, context);
@@ -108,9 +111,11 @@ Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const 
   Explanation out;
   find_position(lua, surroundings, context, out);
   for (const auto& run : runs) out.entries.push_back(start_of(lua, run, context));
+  Places places;
+  for (std::size_t i = 0; i < runs.size() && !surroundings.volumes.empty(); ++i) places.emplace(runs[i].entry.name, i);
   for (const auto& volume : surroundings.volumes) {
     out.volumes.push_back(state_of(lua, volume, out.position, context));
-    blend_in(lua, volume, out.volumes.back(), runs, context, out.entries);
+    blend_in(lua, volume, out.volumes.back(), runs, places, context, out.entries);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     settle_composition(lua, runs[i], context, out.entries[i]);

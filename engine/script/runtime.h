@@ -59,11 +59,11 @@ struct DeclaredEntry {
   int effect = 0;  ///< index in Runtime::effects
   std::optional<std::string> name;
   SettingSource opacity, blend;
-  int mask = -1;                   ///< index in Runtime::masks, or -1
-  std::optional<int> preset_mask;  ///< the one before --set
-  bool placed = false;  ///< says itself where it stands; a group that does not stands where its first entry would
-  StackEntry entry;     ///< its settings are filled in when they are resolved
-  std::vector<SettingSource> sources;  ///< parallel to the schema's settings
+  int mask = -1;                             ///< index in Runtime::masks, or -1
+  std::optional<int> preset_mask;            ///< the one before --set
+  bool says_at = false, says_order = false;  ///< itself; what a group does not say is that of its first entry
+  StackEntry entry;                          ///< its settings are filled in when they are resolved
+  std::vector<SettingSource> sources;        ///< parallel to the schema's settings
 };
 
 /// A mask as fx.mask.NAME{…} and operators made it.
@@ -119,6 +119,11 @@ struct Runtime {
   bool leave_out_unfit = false;                ///< PresetOptions: of arguments too
   bool last_argument_must_fit = false;         ///< with that
   std::vector<DeclaredCurve> curves;
+  std::size_t keys_of_settings = 0;  ///< of curves, each counted for each setting that it is given to
+  std::size_t targets = 0;           ///< of volumes
+  std::size_t stack_entries = 0;     ///< of all stacks
+  /// Settings are settled for a frame that may never be run: functions that fail there give defaults.
+  bool provisional = false;
   std::vector<DeclaredVolume> volumes;
   Assets assets;
   std::size_t curve_keys = 0, wanted = 0, group_members = 0;  ///< of all curves, volumes, groups: limited

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "script/composite.h"
 #include "script/native.h"
 
 namespace afterglow {
@@ -104,31 +105,103 @@ void read_space(lua_State* lua, TableReader& table, Effect& effect) {
   lua_pop(lua, 1);
 }
 
+namespace {
+
+/// Light on its way through a stack.
+struct Light {
+  LightSpace space = LightSpace::scene;
+  std::string maker{};  ///< of display light
+};
+
+class Tracer {
+ public:
+  Tracer(lua_State* lua, const std::vector<EntryRun>& runs) : lua_(lua), runs_(runs), out_(runs.size()) {}
+
+  std::vector<EntrySpace> run() {
+    forwards(0, runs_.size(), {}, true);
+    backwards(0, runs_.size(), {});
+    return std::move(out_);
+  }
+
+ private:
+  struct Members {
+    std::size_t first, middle, last;
+  };
+  Members members(std::size_t i) const {
+    const StackEntry& entry = runs_[i].entry;
+    const std::size_t first = i + 1;
+    return {first, first + static_cast<std::size_t>(entry.middle), first + static_cast<std::size_t>(entry.members)};
+  }
+  bool is_mix(std::size_t i) const { return runs_[i].entry.members > 0 && !runs_[i].entry.settings.empty(); }
+
+  /// Light behind the entries from `begin` to `end`. `seen`: what is around them runs.
+  Light forwards(std::size_t begin, std::size_t end, Light light, bool seen) {
+    for (std::size_t i = begin; i < end; i = members(i).last) {
+      const EntryRun& run = runs_[i];
+      EntrySpace& space = out_[i];
+      space.use = use_of(lua_, run);
+      space.runs = seen && run.entry.enabled && !why_unseen(lua_, run) && !why_inactive(lua_, run);
+      space.before = light.space;
+      if (run.entry.members > 0)
+        light = through_members(i, light);
+      else if (space.runs)
+        light = through(i, light);
+      space.behind = light.space;
+    }
+    return light;
+  }
+
+  Light through(std::size_t i, const Light& light) {
+    EntrySpace& space = out_[i];
+    if (space.use.needs == LightSpace::scene && light.space == LightSpace::display)
+      space.warning = fmt::format("'{}' is made for scene-linear light, but '{}' before it makes display-linear light",
+                                  runs_[i].entry.name, light.maker);
+    return space.use.makes == LightSpace::any ? light : Light{space.use.makes, runs_[i].entry.name};
+  }
+
+  Light through_members(std::size_t i, const Light& light) {
+    const auto [first, middle, last] = members(i);
+    if (!is_mix(i)) return forwards(first, last, light, out_[i].runs);
+    const double amount = runs_[i].entry.settings.front().second.number[0];
+    const bool has_first = amount<1, has_second = amount> 0;
+    const Light one = forwards(first, middle, light, out_[i].runs && has_first);
+    const Light other = forwards(middle, last, light, out_[i].runs && has_second);
+    const bool takes_first = has_first && (!has_second || one.space == LightSpace::display);
+    return takes_first ? one : other;
+  }
+
+  /// `later`: the entry behind that makes display light. Returns that from `begin` on.
+  std::string backwards(std::size_t begin, std::size_t end, std::string later) {
+    std::vector<std::size_t> units;
+    for (std::size_t i = begin; i < end; i = members(i).last) units.push_back(i);
+    for (auto unit = units.rbegin(); unit != units.rend(); ++unit) {
+      const std::size_t i = *unit;
+      const auto [first, middle, last] = members(i);
+      if (is_mix(i)) {
+        const std::string other = backwards(middle, last, later), one = backwards(first, middle, later);
+        later = one != later ? one : other;
+      } else if (runs_[i].entry.members > 0) {
+        later = backwards(first, last, later);
+      } else if (EntrySpace& space = out_[i]; space.runs) {
+        if (space.use.needs == LightSpace::display && space.before == LightSpace::scene && !later.empty())
+          space.warning =
+              fmt::format("'{}' is made for display-linear light, but '{}', which makes it, comes behind it",
+                          runs_[i].entry.name, later);
+        if (space.use.makes == LightSpace::display) later = runs_[i].entry.name;
+      }
+    }
+    return later;
+  }
+
+  lua_State* lua_;
+  const std::vector<EntryRun>& runs_;
+  std::vector<EntrySpace> out_;
+};
+
+}  // namespace
+
 std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>& runs) {
-  std::vector<EntrySpace> out(runs.size());
-  std::string maker;  // of display light, once it is made
-  LightSpace light = LightSpace::scene;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    out[i].use = use_of(lua, runs[i]);
-    out[i].runs = runs[i].entry.enabled && !why_inactive(lua, runs[i]);
-    out[i].before = out[i].behind = light;
-    if (!out[i].runs) continue;
-    if (out[i].use.needs == LightSpace::scene && light == LightSpace::display)
-      out[i].warning = fmt::format("'{}' is made for scene-linear light, but '{}' before it makes display-linear light",
-                                   runs[i].entry.name, maker);
-    if (out[i].use.makes == LightSpace::any) continue;
-    light = out[i].behind = out[i].use.makes;
-    if (light == LightSpace::display) maker = runs[i].entry.name;
-  }
-  std::string later;  // the entry behind that makes display light
-  for (std::size_t i = runs.size(); i-- > 0;) {
-    if (!out[i].runs) continue;
-    if (out[i].use.needs == LightSpace::display && out[i].before == LightSpace::scene && !later.empty())
-      out[i].warning = fmt::format("'{}' is made for display-linear light, but '{}', which makes it, comes behind it",
-                                   runs[i].entry.name, later);
-    if (out[i].use.makes == LightSpace::display) later = runs[i].entry.name;
-  }
-  return out;
+  return Tracer(lua, runs).run();
 }
 
 }  // namespace script

@@ -16,7 +16,8 @@ void read_space(lua_State* lua, TableReader& table, Effect& effect);
 
 /// Follows the light through the stack, which begins scene-linear. An entry is warned about when it is made for scene
 /// light and gets display light, or is made for display light and stands before the entry that makes it. In a stack
-/// that never makes display light nothing is known about the picture, and nothing is warned about. Throws ScriptError.
+/// that never makes display light nothing is known about the picture, and nothing is warned about. Both looks of a mix
+/// get the light in front of it; what nobody sees does not run. Throws ScriptError.
 std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>& runs);
 
 }  // namespace afterglow::script

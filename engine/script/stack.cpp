@@ -17,7 +17,8 @@
 namespace afterglow::script {
 namespace {
 
-constexpr std::size_t kMaxEntries = 1024;  // of one state
+constexpr std::size_t kMaxEntries = 1024;            // of one state
+constexpr std::size_t kMaxStackEntries = 64 * 1024;  // of all its stacks
 
 const char kEffects = 0;  // registry key of the functions made for effects, by name
 
@@ -119,6 +120,9 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
 void push_stack(lua_State* lua, DeclaredStack stack) {
   Runtime& runtime = Runtime::of(lua);
   if (runtime.stacks.size() >= kMaxEntries) throw failure("too many stacks");
+  runtime.stack_entries += stack.entries.size();
+  if (runtime.stack_entries > kMaxStackEntries)
+    throw failure(fmt::format("more than {} effects in all stacks", kMaxStackEntries));
   for (auto& volume : stack.volumes) aim_volume(lua, volume, stack.entries);
   runtime.stacks.push_back(std::move(stack));
   push_object(lua, kStackKind, Handle{static_cast<int>(runtime.stacks.size()) - 1});

@@ -123,7 +123,9 @@ Value parse_value(const std::string& given) {
     value.kind = Value::Kind::list;
   } else {
     value.kind = Value::Kind::text;
-    const bool quoted = text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0];
+    // One text within quotation marks; not two that have theirs.
+    const bool quoted =
+        text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.find(text[0], 1) + 1 == text.size();
     value.text = quoted ? text.substr(1, text.size() - 2) : text;
   }
   return value;

@@ -15,8 +15,9 @@
 namespace afterglow::script {
 namespace {
 
-constexpr std::size_t kMaxVolumes = 1024;      // of one state
-constexpr std::size_t kMaxWanted = 16 * 1024;  // settings of all its volumes
+constexpr std::size_t kMaxVolumes = 1024;       // of one state
+constexpr std::size_t kMaxTargets = 64 * 1024;  // settings of entries that they set
+constexpr std::size_t kMaxWanted = 16 * 1024;   // settings of all its volumes
 const std::vector<std::string> kShapes{"global", "box", "sphere"};
 
 SettingSchema schema_of(SettingType type, std::optional<double> min = {}, std::optional<double> max = {}) {
@@ -163,17 +164,23 @@ const SettingSchema& position_schema() {
 }
 
 void aim_volume(lua_State* lua, DeclaredVolume& volume, const std::vector<DeclaredEntry>& entries) {
+  Runtime& runtime = Runtime::of(lua);
   for (const auto& wanted : volume.wanted) {
+    runtime.box->charge(entries.size());
     const auto named = [&](const DeclaredEntry& e) { return e.entry.name == wanted.entry; };
     const bool by_name = std::any_of(entries.begin(), entries.end(), named);
     bool found = false;
-    std::vector<std::string> names;
     for (const auto& declared : entries) {
-      names.push_back(declared.entry.name);
       if (by_name ? !named(declared) : declared.entry.effect != wanted.entry) continue;
       found = true;
+      if (++runtime.targets > kMaxTargets)
+        fail_volume(*runtime.box, volume,
+                    failure(fmt::format("volumes set more than {} settings of entries", kMaxTargets),
+                            {"settings", wanted.entry, wanted.setting}));
       aim(lua, volume, wanted, declared);
     }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; !found && i < entries.size(); ++i) names.push_back(entries[i].entry.name);
     if (!found)
       fail_volume(Sandbox::of(lua), volume,
                   failure(fmt::format("fx.volume: the stack has no entry '{}'", tidy_message(wanted.entry, 60)),

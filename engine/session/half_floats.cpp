@@ -22,7 +22,7 @@ double promised(const Promises& of, const char* kind, const char* number) {
 }
 
 bool is_composed(const StackEntry& entry) {
-  return entry.opacity != 1 || entry.blend != "normal" || entry.mask || entry.members > 0;
+  return entry.opacity != 1 || entry.blend != "normal" || entry.mask || entry.middle > 0;
 }
 
 }  // namespace
@@ -38,13 +38,23 @@ HalfFloatPromise half_float_promise(const Build& build) {
   };
   for (const auto& history : build.graph.histories)
     add(0, kNone, fmt::format("'{}' looks at the frame before", history.effect));
+  struct Group {
+    std::size_t end;
+    double composite;
+  };
+  std::vector<Group> groups;  // that are open, the inner ones behind
   for (std::size_t i = 0; i < build.entries->size(); ++i) {
+    // A group has no passes but those of its members and, behind them, its composite.
+    for (; !groups.empty() && groups.back().end == i; groups.pop_back()) out.error *= groups.back().composite;
     const StackEntry& entry = (*build.entries)[i];
     const auto& skipped = build.graph.skipped;
-    if (!entry.enabled || std::ranges::find(skipped, entry.name, &Skipped::name) != skipped.end()) continue;
+    if (!entry.enabled || std::ranges::find(skipped, entry.name, &Skipped::name) != skipped.end()) {
+      i += static_cast<std::size_t>(entry.members);
+      continue;
+    }
     const double composite = is_composed(entry) ? kComposite : 1;
-    if (entry.members > 0) {  // a group has no passes but those of its members and its composite
-      out.error *= composite;
+    if (entry.members > 0) {
+      groups.push_back({i + 1 + static_cast<std::size_t>(entry.members), composite});
       continue;
     }
     const bool asked = i < build.promises.size();
@@ -61,6 +71,7 @@ HalfFloatPromise half_float_promise(const Build& build) {
     else
       add(before, composite * own, fmt::format("'{}' promises an error of {:g}", entry.name, own));
   }
+  for (const Group& group : groups) out.error *= group.composite;
   return out;
 }
 

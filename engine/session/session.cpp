@@ -7,6 +7,7 @@
 
 #include "core/exception.h"
 #include "core/locale.h"
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "exec/cpu/warm_up.h"
 #include "image/encode.h"
@@ -95,14 +96,22 @@ Result<std::unique_ptr<Session>> Session::begin(const std::filesystem::path& pre
   state->options = options;
   state->preset_file = preset.string();
   state->diagnostics = &diagnostics;
-  state->opening = std::async(
-      std::launch::async, [device = options.device, &diagnostics] { return State::open_device(device, diagnostics); });
   AFTERGLOW_TRY(state->stack, Stack::load(preset, options.stack, diagnostics));
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
+void Session::begin_opening() {
+  State& s = *state_;
+  if (s.device || s.failed || s.opening.valid()) return;
+  parallel_for(2, [](std::size_t) {});  // loops find their threads there
+  s.opening = std::async(std::launch::async, [options = s.options.device, &diagnostics = *s.diagnostics] {
+    return State::open_device(options, diagnostics);
+  });
+}
+
 Result<void> Session::ready() {
   State& s = *state_;
+  begin_opening();
   if (s.opening.valid()) {
     auto done = s.use(s.opening.get());
     if (!done) s.failed = std::move(done).error();

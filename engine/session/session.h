@@ -53,14 +53,17 @@ struct SessionReport {
 /// Not thread-safe.
 class Session {
  public:
-  /// Loads the preset while the device opens. Errors: script, device, usage (unknown override).
+  /// Loads the preset and opens the device. Errors: script, device, usage (unknown override).
   static Result<std::unique_ptr<Session>> open(const std::filesystem::path& preset, const SessionOptions& options,
                                                Diagnostics& diagnostics);
-  /// Does not wait for the device: until `ready` has, only `preset` and `evaluate` may be used, and of `stack` what
-  /// needs no device. `diagnostics` must stay until then. Errors: script, usage.
+  /// Loads the preset alone: until `ready`, only `preset` and `evaluate` may be used, and of `stack` what needs no
+  /// device. `diagnostics` must stay until then. Errors: script, usage.
   static Result<std::unique_ptr<Session>> begin(const std::filesystem::path& preset, const SessionOptions& options,
                                                 Diagnostics& diagnostics);
-  /// Waits for the device, the first time. Errors: device.
+  /// Begins to open the device on a thread of its own. Call it behind what is to run meanwhile: while a driver is being
+  /// loaded, which takes most of the time, no other thread can begin in the whole process.
+  void begin_opening();
+  /// Opens the device, or waits for that, the first time. Errors: device.
   Result<void> ready();
   ~Session();
 

@@ -234,5 +234,19 @@ TEST_F(Explain, FramesOfASequenceAreTheSameWhateverRanBefore) {
   EXPECT_NE(read("all/a.0003.exr"), read("all/a.0002.exr"));
 }
 
+TEST_F(Explain, NamesTheLineOfAValueInAnotherScript) {
+  write("night.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.extend(\"cave\", {\n"
+        "  tone_mapping = { opacity = 1 },\n"
+        "  color_adjustments = {\n"
+        "    contrast = 20,\n"
+        "    opacity = 0.4 } })\n");
+  const Outcome outcome = run({"explain", "night.lua", "color_adjustments"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("20 (night.lua:5)"));
+  EXPECT_THAT(outcome.out, HasSubstr("0.4 (night.lua:6)"));
+}
+
 }  // namespace
 }  // namespace afterglow::test

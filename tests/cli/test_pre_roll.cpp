@@ -152,5 +152,32 @@ TEST_F(PreRoll, IsExplainedAndDrawn) {
   EXPECT_THAT(dot.out, HasSubstr("[style=dashed, label=\"next frame\""));
 }
 
+/// Of long runs, too: an effect that looks back in two frames of many.
+TEST_F(PreRoll, ALookBackInTwoFramesOfManyIsSeen) {
+  constexpr int kFrames = 200;
+  const auto file = [](int frame) { return fmt::format("long/shot.{:04}.exr", frame); };
+  for (int frame = 1; frame <= kFrames; ++frame) make_exr(file(frame), 2, 2);
+  write("effects/flash.lua", R"(
+local fx = require "afterglow"
+return fx.effect { name = "flash", settings = { on = fx.bool { default = false } },
+  active = function(s) return s.on, "off" end,
+  build = function(g, s, source)
+    local before = g:history { size = { 1, 1 }, pre_roll = 3 }
+    g:keep(before, g:pass { shader = "back/propagate", before = before, size = { 1, 1 }, frame = g.frame, time = g.frame_time * g.fps })
+    return g:pass { shader = "back/show", source = source, before = before }
+  end })");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.flash { on = function(t) return t.frame == 5 or "
+        "t.frame == 6 end } }\n");
+  const auto made = [&](const std::string& folder, const std::string& frames) {
+    const Outcome outcome = run({"run", "look.lua", "long/shot.####.exr", "-o", folder + "/", "--frames", frames});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return read(folder + "/shot.0006.exr");
+  };
+  const std::string whole = made("whole", "1-200");
+  EXPECT_FALSE(whole.empty());
+  EXPECT_TRUE(made("even", "2-200x2") == whole);
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -90,6 +90,12 @@ TEST_F(StackEditing, KeepsCarriageReturns) {
             begin + "  fx.grade {},\r\n  -- a\r\n  fx.glow {}\r\n" + end);
 }
 
+TEST_F(StackEditing, MovesEntriesBehindPartsThatAreCommentedOut) {
+  EXPECT_EQ(inside("\n  fx.glow {},\n  --[[\n  fx.glare {},\n  --]]\n  -- colour\n  fx.grade {},\n",
+                   {Kind::earlier, "grade"}),
+            "\n  -- colour\n  fx.grade {},\n  --[[\n  fx.glare {},\n  --]]\n  fx.glow {},\n");
+}
+
 TEST_F(StackEditing, RemovesAnEntryWithItsLinesAndNothingElse) {
   const std::string entries =
       "\n  name = \"x\",\n  -- light\n  fx.glow { amount = 1,  -- inside\n    },  -- behind\n  -- colour\n  fx.grade "

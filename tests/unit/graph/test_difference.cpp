@@ -36,6 +36,10 @@ TEST(Difference, NamesTheEffectAndWhatIsOtherwise) {
   other.images[static_cast<std::size_t>(other.passes[1].output)].channels = 1;
   EXPECT_EQ(text(first_difference(graph, other)), "second: pass 'test.b' is made otherwise");
   other = graph;
+  other.images[static_cast<std::size_t>(other.source)].data =
+      std::make_shared<const ImageData>(ImageData{.size = {1, 1}, .pixels = {}, .hash = {1, 2}, .file = {}});
+  EXPECT_EQ(text(first_difference(graph, other)), "first: pass 'test.a0' is made otherwise");
+  other = graph;
   other.idle.push_back({"second", other.source, other.result, 1});
   EXPECT_EQ(text(first_difference(graph, other)), "second: idle gives another limit");
   other = graph;

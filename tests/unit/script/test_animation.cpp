@@ -60,6 +60,10 @@ struct Animation : testing::Test {
     scene.stack(entry);
     return scene.load_error();
   }
+  std::string build_error(const std::string& entry) {
+    scene.stack(entry);
+    return scene.build_error();
+  }
   Scene scene;
 };
 
@@ -156,9 +160,8 @@ return fx.stack { fx.glow {
     n = n + 0.25
     return n
   end } })");
-  EXPECT_EQ(
-      scene.load_error(),
-      "preset.lua:4: error: glow.gain is 0.25 and then 0.5 at the same frame; its function must depend on t alone");
+  EXPECT_EQ(scene.build_error(),
+            "preset.lua:4: error: glow.gain is 0.75 and then 1 at the same frame; its function must depend on t alone");
 }
 
 TEST_F(Animation, OverridesEndTheMotion) {
@@ -189,13 +192,14 @@ TEST_F(Animation, MessagesOfCurves) {
 }
 
 TEST_F(Animation, MessagesOfFunctions) {
-  EXPECT_EQ(error("fx.glow { gain =\n function(t) return t.frame * 5 end }"),
+  EXPECT_EQ(build_error("fx.glow { gain =\n function(t) return t.frame * 5 end }"),
             "preset.lua:4: error: glow.gain at frame 1 = 5 is out of range; allowed: 0…4");
-  EXPECT_EQ(error("fx.glow { gain = function(t)\n return t.frmae end }"),
+  EXPECT_EQ(build_error("fx.glow { gain = function(t)\n return t.frmae end }"),
             "preset.lua:4: error: t has no \"frmae\"; allowed: fps, frame, time; did you mean 'frame'?");
-  EXPECT_EQ(error("fx.glow { gain = function(t)\n t.frame = 3 return 1 end }"),
+  EXPECT_EQ(build_error("fx.glow { gain = function(t)\n t.frame = 3 return 1 end }"),
             "preset.lua:4: error: this table is read-only");
-  EXPECT_THAT(error("fx.glow { gain = function(t) while true do end end }"), HasSubstr("instruction budget spent"));
+  EXPECT_THAT(build_error("fx.glow { gain = function(t) while true do end end }"),
+              HasSubstr("instruction budget spent"));
   // What goes wrong at a later frame only.
   EXPECT_THAT(values("gain", "function(t) return t.frame > 5 and -1 or 1 end", {1, 6}),
               ElementsAre("preset.lua:3: error: glow.gain at frame 6 = -1 is out of range; allowed: 0…4"));
@@ -223,6 +227,16 @@ TEST_F(Animation, WhatWasSaidOfAFrameStays) {
   EXPECT_EQ(preset->evaluations(), 2u);
   EXPECT_EQ(third->files, fourth->files) << "nothing else was looked at";
   EXPECT_FALSE(third->files->empty());
+}
+
+TEST_F(Animation, AFunctionNeedsValuesForTheFramesThatAreRunAlone) {
+  const std::string baked = "function(t) return ({ [1001] = 0.25, [1002] = 0.5 })[t.frame] end";
+  EXPECT_THAT(values("gain", baked, {1001, 1002}), ElementsAre("0.25", "0.5"));
+  EXPECT_THAT(values("gain", baked, {1001, 7}),
+              ElementsAre("preset.lua:3: error: glow.gain at frame 7 = nil is not a number; allowed: 0…4"));
+  EXPECT_THAT(values("gain", "function(t) return t.nothing.there end", {3}),
+              ElementsAre(HasSubstr("preset.lua:3: error: ")));
+  EXPECT_THAT(error("fx.glow { gain = function(t) while true do end end }"), HasSubstr("instruction budget spent"));
 }
 
 }  // namespace

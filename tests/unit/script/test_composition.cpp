@@ -239,6 +239,44 @@ TEST_F(Composition, WhatAMaskCanUseIsAskedFor) {
   EXPECT_THAT(preset->needs(), ElementsAre("layer:CryptoObject00", "layer:CryptoObject01", "layer:CryptoObject02"));
 }
 
+TEST_F(Composition, InputsThatDependOnTheFrameAreAskedFor) {
+  // A mask that selects nothing in the first frame.
+  scene.stack("fx.a { mask = fx.mask.depth { from = fx.curve { { 1, 20 }, { 2, 0 } }, to = 10 } }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_THAT(preset->needs(), ElementsAre("depth"));
+  // A layer whose name depends on the frame is known with it.
+  scene.stack("fx.a { mask = fx.mask.layer { layer = function(t) return t.frame < 3 and \"ma\" or \"mb\" end } }");
+  preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_THAT(preset->needs(), ElementsAre("layer:ma"));
+  const auto asks_for_more = [&](double frame) {
+    scene.context.frame = frame;
+    const auto more = preset->note_needs(scene.context);
+    EXPECT_TRUE(more.ok());
+    return more.ok() && *more;
+  };
+  EXPECT_FALSE(asks_for_more(2));
+  EXPECT_TRUE(asks_for_more(3));
+  EXPECT_THAT(preset->needs(), ElementsAre("layer:ma", "layer:mb"));
+  EXPECT_FALSE(asks_for_more(3));
+  EXPECT_TRUE(usual_context(*preset, {8, 8}, 3, 24).auxiliary.contains("layer:mb"));
+  // Evaluation notes them too.
+  preset = scene.load();
+  ASSERT_TRUE(scene.evaluate(*preset));
+  EXPECT_THAT(preset->needs(), ElementsAre("layer:ma", "layer:mb"));
+}
+
+TEST_F(Composition, ShadersOfMasksAreWarnedOf) {
+  scene.write("masks/leveled.lua", R"(local fx = require "afterglow"
+    return fx.effect { name = "leveled", settings = {},
+      build = function(g, s, source) return g:pass { shader = "leveled", source = source } end })");
+  scene.write("shaders/leveled.glsl",
+              "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return textureLod(source, vec2(0.5), 1.0); }\n");
+  EXPECT_EQ(error("fx.a { mask = fx.mask.leveled {} }"), "");
+  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("level")));
+}
+
 TEST_F(Composition, LongTextsAreWholeOrRefused) {
   const auto with = [&](std::size_t size) {
     scene.stack("fx.a { mask = fx.mask.cryptomatte { names = \"" + std::string(size, 'x') + "\" } }");

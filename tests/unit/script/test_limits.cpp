@@ -219,5 +219,41 @@ TEST(Limits, AFailedBuildLeavesAUsableState) {
   }
 }
 
+TEST(Limits, ListsInListsAreCounted) {
+  EXPECT_EQ(run("local t = {} for i = 1, 8 do t[i] = t end\nlocal s = fx.stack { t }"),
+            "preset.lua:3: error: fx.stack: position 1 is a list that holds itself");
+  EXPECT_THAT(run("local t = { false } for i = 1, 31 do t = { t, t } end\nlocal s = fx.stack { t }"),
+              testing::HasSubstr(kBudget));
+  EXPECT_THAT(run("local t = { false } for i = 1, 31 do t = { t, t } end\nlocal s = fx.group { t }"),
+              testing::HasSubstr(kBudget));
+  EXPECT_EQ(run("local t = { false, false } local s = fx.stack { t, { t, t }, t }"), "");
+}
+
+TEST(Limits, WhatStandsForManyIsCounted) {
+  Scene scene;
+  scene.effect("many", R"(settings = { a = fx.float { default = 0 }, b = fx.float { default = 0 } },
+    build = function(g, s, source) return source end,)");
+  const auto load = [&](const std::string& text) {
+    scene.preset(
+        "local fx = require \"afterglow\"\nlocal all = {}\n"
+        "for i = 1, 1000 do all[i] = fx.many { name = \"e\" .. i } end\n" +
+        text);
+    return scene.load_error();
+  };
+  // Volumes that aim at an effect aim at each of its entries.
+  EXPECT_THAT(load("for i = 1, 40 do all[#all + 1] = fx.volume { settings = { many = { a = 1, b = 2 } } } end\n"
+                   "return fx.stack(all)\n"),
+              testing::HasSubstr("volumes set more than 65536 settings of entries"));
+  EXPECT_EQ(load("for i = 1, 10 do all[#all + 1] = fx.volume { settings = { many = { a = 1, b = 2 } } } end\n"
+                 "return fx.stack(all)\n"),
+            "");
+  EXPECT_THAT(load("local last for i = 1, 100 do last = fx.stack(all) end return last\n"),
+              testing::HasSubstr("more than 65536 effects in all stacks"));
+  scene.preset(
+      "local fx = require \"afterglow\"\nlocal keys, all = {}, {}\nfor i = 1, 2000 do keys[i] = { i, i } end\n"
+      "local curve = fx.curve(keys)\nfor i = 1, 200 do all[i] = fx.many { a = curve } end\nreturn fx.stack(all)\n");
+  EXPECT_THAT(scene.load_error(), testing::HasSubstr("the curves of all settings have more than 262144 keys"));
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -130,5 +130,54 @@ TEST_F(Order, SettingsKeepTheOrderOfDeclaration) {
   EXPECT_THAT(preset->entries()[0].changed, ElementsAre("alpha", "mid"));
 }
 
+TEST_F(Order, LightIsFollowedThroughGroupsAndMixes) {
+  scene.effect("view",
+               "order = 10, space = { needs = \"scene\", makes = \"display\", view = true },"
+               " build = function(g, s, source) return source end,");
+  scene.effect("plain", "order = 10, build = function(g, s, source) return source end,");
+  const auto trace = [&](const std::string& entries) {
+    scene.stack(entries);
+    auto preset = scene.load();
+    EXPECT_TRUE(preset.ok());
+    auto found = preset->spaces();
+    EXPECT_TRUE(found.ok());
+    return found.ok() ? *found : std::vector<EntrySpace>{};
+  };
+  for (const std::string seen :
+       {"fx.view {}", "fx.group { fx.view {} }", "fx.view { opacity = 0.5 }", "fx.mix { {}, fx.view {}, amount = 0.5 }",
+        "fx.mix { fx.view {}, {}, amount = 0.5 }", "fx.mix { fx.view {}, fx.plain {}, amount = 0 }"})
+    EXPECT_TRUE(ends_in_view(trace(seen))) << seen;
+  for (const std::string unseen :
+       {"fx.view { enabled = false }", "fx.view { opacity = 0 }", "fx.view { mask = 0 }",
+        "fx.group { enabled = false, fx.view {} }", "fx.group { opacity = 0, fx.view {} }",
+        "fx.group { mask = 0, fx.group { fx.view {} } }", "fx.mix { {}, fx.view {}, amount = 0 }",
+        "fx.mix { fx.view {}, {}, amount = 1 }", "fx.plain {}"})
+    EXPECT_FALSE(ends_in_view(trace(unseen))) << unseen;
+  // Both looks of a mix get the scene's light; what is behind it gets what they make.
+  auto found = trace("fx.mix { fx.view {}, fx.view {} }, fx.view { order = 20 }");
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found[1].warning + found[2].warning, "");
+  EXPECT_EQ(found[2].before, LightSpace::scene);
+  EXPECT_EQ(found[0].behind, LightSpace::display);
+  EXPECT_THAT(found[3].warning, testing::HasSubstr("is made for scene-linear light"));
+}
+
+TEST_F(Order, AGroupHasWhatItDoesNotSayFromItsFirstEffect) {
+  scene.effect("late", "at = \"after_post_process\", order = 7, build = function(g, s, source) return source end,");
+  const auto place = [&](const std::string& keys, const std::vector<Override>& overrides = {}) {
+    scene.options.overrides = overrides;
+    scene.stack("fx.group { name = \"edges\", " + keys + "fx.late {} }");
+    auto preset = scene.load();
+    if (!preset) return preset.error().text();
+    const StackEntry& group = preset->entries().front();
+    return group.at + " " + std::to_string(group.order);
+  };
+  EXPECT_EQ(place(""), "after_post_process 7");
+  EXPECT_EQ(place("order = 130, "), "after_post_process 130");
+  EXPECT_EQ(place("at = \"before_post_process\", "), "before_post_process 7");
+  EXPECT_EQ(place("at = \"post_process\", order = 1, "), "post_process 1");
+  EXPECT_EQ(place("", {{"edges", "order", "130"}}), "after_post_process 130");
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -357,6 +357,11 @@ TEST_F(HistoriesOfFrames, WhatTheFrameBeforeMadeMayBeTheResult) {
   const auto more = open();
   EXPECT_EQ(run(*more, 1, 1), 4);
   EXPECT_EQ(run(*more, 2, 5), 4);
+  // To an effect behind it, what it looks back at is an image of this frame.
+  look("fx.delay {}, fx.delay {}");
+  const auto two = open();
+  const float given[] = {1, 5, 7, 9}, made[] = {1, 1, 1, 5};
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(run(*two, i + 1, given[i]), made[i]) << i;
 }
 
 /// The numbers of a filter move with time as values do: what it adds up goes on.
