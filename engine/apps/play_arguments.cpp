@@ -81,7 +81,8 @@ void PlayArguments::add_playing(CLI::App& app) {
       ->type_name("OUTPUT")
       ->group(window);
   app.add_flag("--headless", headless, "Play without a window, and end")->group(alone);
-  app.add_option("--count", count, "Frames to play, looping as --loop says (default: each once)")
+  app.add_option("--count", count,
+                 "Frames to play, looping as --loop says (default: each once; loop and ping-pong need it)")
       ->check(above_zero())
       ->type_name("N")
       ->group(alone);

@@ -32,6 +32,7 @@ Result<void> play_headless(Player& player, const HeadlessOptions& options) {
   Transport& transport = player.transport();
   transport.set_pacing(options.fast ? Pacing::every_frame : Pacing::real_time, player.now());
   if (!options.count) transport.set_loop(LoopMode::once, player.now());
+  if (transport.speed() < 0) transport.go_to_last(player.now());  // where playing backwards begins
   AFTERGLOW_CHECK(show_first(player));
   const bool moves = transport.first() != transport.last();  // one frame stands still however long it is played
   if (moves && (!options.count || *options.count > 1)) transport.play(player.now());

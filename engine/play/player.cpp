@@ -92,12 +92,22 @@ void Player::State::want_pictures() {
   ahead->want(keys);
 }
 
-/// Inputs that depend on the frame are known before its picture is read.
+/// Inputs that depend on the frame are known before its picture is read; of further frames once they are run.
 void Player::State::ask_frames(Preset& preset) const {
   constexpr int kMostFrames = 1000;
-  const int last = std::min(transport.last(), transport.first() + kMostFrames - 1);
-  for (int position = transport.first(); position <= last; ++position)
+  for (int position = 0; position < std::min(footage->frames(), kMostFrames); ++position)
     if (!preset.note_needs(context(position, 1))) return;  // told when it is evaluated
+}
+
+/// Whether the frame that was run asked for inputs that pictures have not been read with.
+bool Player::State::wants_more() const {
+  for (LiveSession* session : {first.get(), second.get()}) {
+    Stack* const stack = session ? session->live().stack() : nullptr;
+    if (!stack || !stack->preset().may_change()) continue;
+    for (const std::string& name : stack->preset().needs())
+      if (std::ranges::find(needs.auxiliary, name) == needs.auxiliary.end()) return true;
+  }
+  return false;
 }
 
 /// What the present stacks want of pictures: when they want more, or other colours, pictures are read again. Both looks
@@ -203,6 +213,8 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
     if (measured > 0 && status.times.kind != BuildTimes::Kind::frame)
       figures.reloaded({.build = status.times, .execute = work, .present = 0});
     measured = status.generation;
+    follow_needs();
+  } else if (wants_more()) {
     follow_needs();
   }
   return true;

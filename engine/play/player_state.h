@@ -80,6 +80,7 @@ struct Player::State {
   void watch_finite();
   void take_finite();
   void ask_frames(Preset& preset) const;
+  bool wants_more() const;
   void follow_needs();
   Result<bool> show_due(double now);
   Result<bool> time_a_kernel(bool changed, Step& step);

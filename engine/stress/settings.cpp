@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/inside.h"
+
 namespace afterglow::stress {
 namespace {
 
@@ -73,8 +75,9 @@ std::string sample_file(const SettingSchema& setting, const SearchPath& path) {
     for (fs::recursive_directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
       std::string extension = it->path().extension().string();
       if (!extension.empty()) extension.erase(0, 1);
-      if (it->is_regular_file(ec) && std::ranges::find(setting.choices, extension) != setting.choices.end())
-        found.push_back(fs::relative(it->path(), folder, ec).string());
+      const bool fits = std::ranges::find(setting.choices, extension) != setting.choices.end();
+      if (fits && it->is_regular_file(ec) && lies_in(it->path(), folder))  // links that lead out may not be named
+        found.push_back(it->path().lexically_relative(folder).string());
     }
   }
   std::ranges::sort(found);

@@ -233,5 +233,30 @@ TEST_F(CliTest, PicturesThatAreNumbers) {
   EXPECT_NEAR(brighter("channel = \"r\""), 0.2158605 * 51 / 255, 1e-5) << "light, times alpha";
 }
 
+/// Which layer a mask asks for may depend on the frame.
+TEST_F(Mattes, LayersThatFramesAskFor) {
+  const auto value = [](const std::string& channel, int x) {
+    return channel.size() == 1 ? kLight : channel.starts_with("ma.") ? 0.0F : matte(x);
+  };
+  for (int frame = 1; frame <= 4; ++frame)
+    make("s." + std::to_string(frame) + ".exr", {"R", "G", "B", "ma.R", "ma.G", "ma.B", "mb.R", "mb.G", "mb.B"}, value);
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure { ev = 1, mask = fx.mask.layer { channel = "
+        "\"r\", layer = function(t) return t.frame < 3 and \"ma\" or \"mb\" end } } }\n");
+  for (const std::string frames : {"1-4", "4"}) {
+    const Outcome outcome = run({"run", "look.lua", "s.#.exr", "-o", "t.#.exr", "--frames", frames, "--type", "float"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
+    fs::rename(path("t.4.exr"), path("o.exr"));
+    expect_mask(matte, "frame 4 of " + frames);
+  }
+  fs::rename(path("t.2.exr"), path("o.exr"));
+  expect_mask([](int) { return 0.0F; }, "frame 2");
+  const Outcome played = run({"play", "look.lua", "s.#.exr", "--headless", "--fast", "--screenshot", "o.exr"});
+  EXPECT_EQ(played.exit_code, kDone) << played.err;
+  EXPECT_THAT(played.err, Not(HasSubstr("warning")));
+  expect_mask(matte, "played");
+}
+
 }  // namespace
 }  // namespace afterglow::test

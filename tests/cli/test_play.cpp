@@ -49,6 +49,13 @@ TEST_F(Play, EveryFrameOnceWithFigures) {
       << "from the second frame on: the first starts the clock";
 }
 
+TEST_F(Play, BackwardsEveryFrameOnce) {
+  const Outcome outcome = play({"in/shot.####.exr", "--headless", "--fast", "--speed", "-1", "--report", "play.json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(report().at("frames").at("shown"), 4);
+  EXPECT_EQ(report().at("frames").at("last"), 1);
+}
+
 TEST_F(Play, APassThatMakesNanIsNamed) {
   write("effects/root.lua",
         "local fx = require \"afterglow\"\nreturn fx.effect { name = \"root\", doc = \"Roots.\", at = "

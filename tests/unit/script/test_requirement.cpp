@@ -29,7 +29,8 @@ TEST(Requires, IsFoundInTextThatIsNotRun) {
   EXPECT_TRUE(newer_requirement("x { requires='0.2.1' }", own));
   for (const char* fits :
        {"requires = \"0.2\"", "requires = \"0.2.0\"", "requires = \"0.1.9\"", "-- requires = \"0.3\"",
-        "not_requires = \"0.3\"", "requires = 0.3", "requires \"0.3\"", "requires = \"0.3", "requires"})
+        "not_requires = \"0.3\"", "local s = [[ requires = \"0.3\" ]]", "local s = 'requires = \"0.3\"'",
+        "--[[\nrequires = \"0.3\"\n]]", "requires = 0.3", "requires \"0.3\"", "requires = \"0.3", "requires"})
     EXPECT_FALSE(newer_requirement(fits, own)) << fits;
 }
 
