@@ -66,15 +66,17 @@ Result<void> follow_light(BatchRun& run, const Build& build, FrameLoop& loop) {
 }
 
 /// How many earlier frames the frames of this run need; empty when none depends on another. Where settings change from
-/// frame to frame all are asked: an effect that looks back may be active in one of them alone.
+/// frame to frame all are asked, if effects may look back at all: one may be active in a frame alone.
 Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
   const auto& frames = run.report.frames;
   Preset& preset = run.session->preset();
-  const std::size_t asked = preset.may_change() ? frames.size() : 1;
+  constexpr std::size_t kSome = 64;
+  const std::size_t several = preset.may_look_back() ? frames.size() : std::min(frames.size(), kSome);
+  const std::size_t asked = preset.may_change() ? several : 1;
   std::optional<int> most;
   const Size size = run.first ? loop.size_of(*run.first) : kUsualSize;
   for (std::size_t i = 0; i < asked; ++i) {
-    const double frame = frames[i].job.frame;
+    const double frame = frames[i * frames.size() / asked].job.frame;
     const BuildContext context = usual_context(preset, size, frame, run.request.loop.fps);
     // A picture alone is asked itself, and what is said of it is what runs.
     auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);

@@ -175,6 +175,11 @@ std::optional<bool> Preset::keeps_negative() const {
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 const std::vector<PresetArgument>& Preset::arguments() const { return state_->runtime->arguments; }
 bool Preset::may_change() const { return state_->may_change; }
+bool Preset::may_look_back() const {
+  return std::ranges::any_of(state_->runtime->box->sources(), [](const Source& source) {
+    return !source.library && source.text.find("history") != std::string::npos;
+  });
+}
 const std::vector<StackEntry>& Preset::entries() const { return *state_->loaded; }
 const Explanation& Preset::explanation() const { return *state_->loaded_so; }
 bool Preset::detailed() const {

@@ -169,6 +169,9 @@ class Preset {
   const std::vector<PresetArgument>& arguments() const;  ///< that scripts of the preset declare, in their order
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;
+  /// May an effect look at frames before (g:history)? By the texts of what was loaded; false is sure, but for scripts
+  /// that put the word together.
+  bool may_look_back() const;
   /// Has an enabled entry an effect that declares `detail = true`? Previews are then made at twice their size.
   bool detailed() const;
   /// The light in which each entry runs, in the order of execution, with the settings of the last evaluation.

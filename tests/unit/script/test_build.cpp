@@ -234,5 +234,19 @@ TEST_P(ShippedPreset, Builds) {
 INSTANTIATE_TEST_SUITE_P(Build, ShippedPreset, testing::ValuesIn(shipped()),
                          [](const auto& test) { return test.param.stem().string(); });
 
+TEST(Build, WhatMayLookBackIsKnownByItsText) {
+  Scene scene;
+  add_fog(scene, "needs = { \"depth\" },");
+  scene.effect("echo", R"(build = function(g, s, source)
+      local before = g:history { first = source }
+      g:keep(before, source)
+      return before
+    end,)");
+  scene.stack("fx.fog {}");
+  EXPECT_FALSE(scene.load()->may_look_back());
+  scene.stack("fx.fog {}, fx.echo { enabled = false }");
+  EXPECT_TRUE(scene.load()->may_look_back());
+}
+
 }  // namespace
 }  // namespace afterglow::test
