@@ -149,7 +149,9 @@ Result<PlannedFrame> FramePlanner::plan(const FrameJob& job, double step, bool r
   if (job.refused) return *job.refused;
   PlannedFrame planned;
   // A header tells of the inputs that it was asked for. Which those are may depend on the frame, and on what it tells.
-  for (bool more = true; more;) {
+  constexpr int kMostReads = 4;
+  bool more = true;
+  for (int reads = 0; more && reads < kMostReads; ++reads) {
     auto header = read_header(job.input, read_options(job));
     if (!header) return named(std::move(header).error(), job);
     planned.header = std::move(*header);

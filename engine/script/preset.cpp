@@ -102,9 +102,10 @@ void Preset::State::scale_lengths(lua_State* lua, const BuildContext& context) {
 }
 
 bool Preset::State::note(const std::vector<std::string>& inputs) {
+  constexpr std::size_t kMost = 1024;  // a script may ask for another one each time
   const std::size_t before = needs.size();
   for (const auto& input : inputs)
-    if (std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
+    if (needs.size() < kMost && std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
   return needs.size() > before;
 }
 

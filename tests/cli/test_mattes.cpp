@@ -258,5 +258,19 @@ TEST_F(Mattes, LayersThatFramesAskFor) {
   expect_mask(matte, "played");
 }
 
+TEST_F(Mattes, AnEffectThatAsksForAnotherLayerEachTimeEnds) {
+  make("a.exr", {"R", "G", "B"}, [](const std::string&, int) { return kLight; });
+  write("effects/greedy.lua",
+        "local fx = require \"afterglow\"\nlocal n = 0\nreturn fx.effect { name = \"greedy\", settings = { a = "
+        "fx.float { "
+        "default = 0 } },\n  needs = function(s) n = n + 1 return { \"layer:x\" .. n } end,\n"
+        "  build = function(g, s, source) return source end }\n");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.greedy { a = function(t) return t.frame end } }\n");
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "o.exr"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("effect 'greedy' is skipped: no layer:x"));
+}
+
 }  // namespace
 }  // namespace afterglow::test
