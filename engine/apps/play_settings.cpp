@@ -5,9 +5,14 @@
 
 #include <algorithm>
 #include <sstream>
+#include <system_error>
 
+#include "apps/options.h"
+#include "apps/window_place.h"
 #include "core/text.h"
 #include "core/user_folders.h"
+#include "play/footage.h"
+#include "play/transport.h"
 
 namespace afterglow {
 namespace {
@@ -16,6 +21,18 @@ std::string without_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
   return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
+}
+
+/// What the command itself looks at later, when nobody knows that the value came from here.
+Result<void> check_value(const std::string& name, const std::string& value) {
+  if (name == "proxy") AFTERGLOW_CHECK(parse_proxy(value));
+  if (name == "cache") AFTERGLOW_CHECK(parse_memory(value));
+  if (name == "geometry") AFTERGLOW_CHECK(parse_geometry(value));
+  if (name == "loop") AFTERGLOW_CHECK(parse_loop_mode(value));
+  std::error_code none;
+  if (name == "view-icc" && !std::filesystem::exists(value, none))
+    return Error{ErrorKind::usage, fmt::format("'{}': there is no such file", value)};
+  return {};
 }
 
 Result<void> apply_line(CLI::App& command, const std::string& line, const std::string& file, int number) {
@@ -33,6 +50,8 @@ Result<void> apply_line(CLI::App& command, const std::string& line, const std::s
   if (option->get_expected_max() == 0 && value != "true" && value != "false")
     return wrong(fmt::format("'{}' is no value of {}", value, name), "true, false");
   try {
+    if (const auto good = check_value(name, value); !good)
+      return wrong(fmt::format("{}: {}", name, good.error().message), good.error().allowed, good.error().nearest);
     option->add_result(value);
     option->run_callback();
   } catch (const CLI::Error& error) {

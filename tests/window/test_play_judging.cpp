@@ -235,6 +235,14 @@ TEST_F(PlayWindow, SettingsOfTheUserHoldForEveryWindow) {
   play({"look.lua", "shot.####.exr"});
   EXPECT_EQ(program_->finish(), 2);
   EXPECT_NE(program_->printed().find("play.conf:1: error: "), std::string::npos);
+  for (const std::string wrong : {"proxy = 1/3", "view-icc = none.icc", "cache = much", "loop = round"}) {
+    std::ofstream(folder_ / "afterglow/play.conf") << "# mine\n" << wrong << "\n";
+    play({"look.lua", "shot.####.exr"});
+    EXPECT_EQ(program_->finish(), 2) << wrong;
+    EXPECT_NE(program_->printed().find("play.conf:2: error: " + wrong.substr(0, wrong.find(' ')) + ": '"),
+              std::string::npos)
+        << program_->printed();
+  }
 }
 
 }  // namespace
