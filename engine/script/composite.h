@@ -29,12 +29,12 @@ bool composition_moves(const EntryRun& run);
 /// Why nothing of the entry's result would be seen; empty when something may be.
 std::optional<Inactive> why_unseen(lua_State* lua, const EntryRun& run);
 
+/// May other frames ask for other inputs of masks?
+bool mask_inputs_move(const Runtime& runtime, const EntryRun& run);
 /// Which auxiliary inputs of masks are meant: those without which they select nothing, also those that they can use, or
 /// also those of masks that select nothing now, but whose settings move.
 enum class MaskInputs { needed, used, used_later };
-/// May other frames ask for others?
-bool mask_inputs_move(const Runtime& runtime, const EntryRun& run);
-/// Puts them behind `names`.
+/// Puts those that the entry's masks ask for behind `names`.
 void add_mask_inputs(lua_State* lua, const EntryRun& run, MaskInputs which, std::vector<std::string>& names);
 
 /// `image`, which the entry made of `source`, put over it.
