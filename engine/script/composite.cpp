@@ -93,10 +93,8 @@ void add_inputs(lua_State* lua, const MaskRun& mask, MaskInputs which, std::vect
   if (!mask.named) return;
   const bool later = which == MaskInputs::used_later && moves(mask);
   if (!later && why_inactive(lua, *mask.named)) return;
-  std::vector<std::string> inputs = needed_inputs(lua, *mask.named);
-  if (which != MaskInputs::needed)
-    for (auto& name : optional_inputs(lua, *mask.named)) inputs.push_back(std::move(name));
-  for (auto& name : inputs)
+  const bool needed = which == MaskInputs::needed;
+  for (auto& name : needed ? needed_inputs(lua, *mask.named) : used_inputs(lua, *mask.named))
     if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
 }
 
@@ -135,10 +133,8 @@ class MaskBuilder {
  private:
   Part named(const EntryRun& run) {
     if (why_inactive(lua_, run)) return 0.0;
-    std::vector<std::string> inputs = needed_inputs(lua_, run);
-    for (auto& input : optional_inputs(lua_, run)) inputs.push_back(std::move(input));
     const bool straight = Runtime::of(lua_).effects[static_cast<std::size_t>(run.effect)].schema.straight;
-    graph_.begin(run.entry, std::move(inputs), straight, "mask.");
+    graph_.begin(run.entry, used_inputs(lua_, run), straight, "mask.");
     const ImageRef image = run_build(lua_, run, graph_, source_);
     graph_.end();
     graph_.tell_warnings(*Runtime::of(lua_).box->diagnostics);

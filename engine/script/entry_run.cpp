@@ -142,6 +142,12 @@ std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run) {
   return input_names(lua, run, effect_of(lua, run).optional, "optional");
 }
 
+std::vector<std::string> used_inputs(lua_State* lua, const EntryRun& run) {
+  std::vector<std::string> inputs = needed_inputs(lua, run);
+  for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
+  return inputs;
+}
+
 std::optional<double> idle_limit(lua_State* lua, const EntryRun& run, const ImageRef& source) {
   const Effect& effect = effect_of(lua, run);
   if (!effect.idle.set()) return {};

@@ -52,6 +52,8 @@ std::optional<Inactive> why_inactive(lua_State* lua, const EntryRun& run);
 bool asks_by_function(const Runtime& runtime, const EntryRun& run);
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run);
 std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run);
+/// The needed ones, then the optional ones.
+std::vector<std::string> used_inputs(lua_State* lua, const EntryRun& run);
 /// What `idle` says about an effect that was built on `source`: the largest red, green or blue of it up to which the
 /// effect changes nothing. Empty when there is no such limit.
 std::optional<double> idle_limit(lua_State* lua, const EntryRun& run, const ImageRef& source);

@@ -114,8 +114,7 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
     current = &run.entry;
     const bool changes = script::may_change(run, surroundings);
     if (!run.entry.enabled || (!changes && why_inactive(lua, run))) continue;
-    note(needed_inputs(lua, run));
-    note(optional_inputs(lua, run));
+    note(used_inputs(lua, run));
     std::vector<std::string> of_masks;
     add_mask_inputs(lua, run, MaskInputs::used_later, of_masks);
     note(of_masks);
@@ -132,10 +131,7 @@ bool Preset::State::note_needs_now(lua_State* lua, const StackEntry*& current) {
     if (!run.entry.enabled || !script::may_change(run, surroundings)) continue;
     current = &run.entry;
     std::vector<std::string> inputs;
-    if (!why_inactive(lua, run)) {
-      inputs = needed_inputs(lua, run);
-      for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
-    }
+    if (!why_inactive(lua, run)) inputs = used_inputs(lua, run);
     add_mask_inputs(lua, run, MaskInputs::used, inputs);
     more = note(inputs) || more;
   }

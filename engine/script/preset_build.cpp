@@ -65,9 +65,7 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
     skip(entry, std::move(*why), graph, diagnostics);
     return source;
   }
-  std::vector<std::string> inputs = needed_inputs(lua, run);
-  for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
-  graph.begin(entry, std::move(inputs), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
+  graph.begin(entry, used_inputs(lua, run), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
   const ImageRef image = run_build(lua, run, graph, source);
   graph.end();
   graph.tell_warnings(diagnostics);

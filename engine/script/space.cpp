@@ -163,7 +163,8 @@ class Tracer {
     const auto [first, middle, last] = members(i);
     if (!is_mix(i)) return forwards(first, last, light, out_[i].runs);
     const double amount = runs_[i].entry.settings.front().second.number[0];
-    const bool has_first = amount<1, has_second = amount> 0;
+    const bool has_first = amount < 1;
+    const bool has_second = amount > 0;
     const Light one = forwards(first, middle, light, out_[i].runs && has_first);
     const Light other = forwards(middle, last, light, out_[i].runs && has_second);
     const bool takes_first = has_first && (!has_second || one.space == LightSpace::display);
