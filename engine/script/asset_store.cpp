@@ -31,6 +31,11 @@ void AssetStore::add(const Hash& key, std::uint64_t look, std::shared_ptr<const 
   entries_.insert_or_assign(key, Entry{std::move(value), look});
 }
 
+void AssetStore::drop(const Hash& key) {
+  const std::lock_guard lock(mutex_);
+  entries_.erase(key);
+}
+
 std::uint64_t AssetStore::made() const {
   const std::lock_guard lock(mutex_);
   return made_;

@@ -28,6 +28,9 @@ class AssetStore {
     return made;
   }
 
+  /// Forgets what was made for that key.
+  void drop(const Hash& key);
+
   std::uint64_t made() const;  ///< so far
   std::size_t kept() const;    ///< now
 

@@ -47,6 +47,8 @@ std::string nearest_file(const std::vector<fs::path>& roots, const std::string& 
   return nearest_name(name, names);
 }
 
+std::size_t bytes_of(const ImageData& data) { return data.pixels.size() * sizeof(float); }
+
 /// RGBA from whatever channels a picture has.
 std::vector<float> rgba(const Image& image) {
   if (image.channels == 4) return image.pixels;
@@ -65,14 +67,35 @@ bool is_alpha_alone(const Picture& picture) {
   return last == "a" || last == "alpha";
 }
 
-/// What `make` gives for a file, now or before, of this look or of the two before it.
-template <class T, class Make>
-std::shared_ptr<const T> stored(Runtime& runtime, const char* kind, const fs::path& file, const std::string& how,
-                                std::size_t limit, const Make& make) {
+/// The store's key for what is made of a file. None: it cannot be read.
+std::optional<Hash> key_of(const Runtime& runtime, const char* kind, const fs::path& file, const std::string& how,
+                           std::size_t limit) {
   const auto seen = content_seen(runtime, file, limit);
-  if (!seen) return make();  // which says what is wrong
-  const Hash key = Hasher().add(kind).add(file.string()).add(how).add(seen->hex()).finish();
-  return runtime.assets.store->get<T>(key, look_of(runtime), make);
+  if (!seen) return std::nullopt;
+  return Hasher().add(kind).add(file.string()).add(how).add(seen->hex()).finish();
+}
+
+/// What `make` gives for a key, now or before, of this look or of the two before it. `make` says why there is no key.
+template <class T, class Make>
+std::shared_ptr<const T> stored(Runtime& runtime, const std::optional<Hash>& key, const Make& make) {
+  return key ? runtime.assets.store->get<T>(*key, look_of(runtime), make) : make();
+}
+
+/// Lets go of pictures that no graph holds, those first that were used longest ago, until so many bytes are free or no
+/// such picture is left: what a look shows by frames may be more than it may hold.
+void make_room(Assets& assets, std::size_t bytes) {
+  while (assets.bytes + bytes > kMaxBytes) {
+    auto oldest = assets.pictures.end();
+    for (auto it = assets.pictures.begin(); it != assets.pictures.end(); ++it) {
+      const ReadPicture& picture = it->second;
+      const bool ours = picture.data && picture.key && picture.data.use_count() == 2;  // this and the store
+      if (ours && (oldest == assets.pictures.end() || picture.used < oldest->second.used)) oldest = it;
+    }
+    if (oldest == assets.pictures.end()) return;
+    assets.bytes -= bytes_of(*oldest->second.data);
+    assets.store->drop(*oldest->second.key);
+    assets.pictures.erase(oldest);
+  }
 }
 
 }  // namespace
@@ -114,10 +137,11 @@ std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels,
 
 void count_data(Runtime& runtime, const ImageData* data) {
   if (!data) return;
-  const std::size_t all = runtime.assets.bytes + data->pixels.size() * sizeof(float);
+  make_room(runtime.assets, bytes_of(*data));
+  const std::size_t all = runtime.assets.bytes + bytes_of(*data);
   if (all > kMaxBytes)
-    throw failure(fmt::format("'{}' and what was read before take more than {} MiB", data->file.filename().string(),
-                              kMaxBytes >> 20));
+    throw failure(fmt::format("'{}' and what the look reads besides take more than {} MiB",
+                              data->file.filename().string(), kMaxBytes >> 20));
   runtime.assets.bytes = all;
 }
 
@@ -166,7 +190,8 @@ const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::strin
   if (known) return *known;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  auto loaded = stored<LoadedLut>(runtime, "table", file, correction, kMostLutBytes, [&] {
+  const auto key = key_of(runtime, "table", file, correction, kMostLutBytes);
+  auto loaded = stored<LoadedLut>(runtime, key, [&] {
     auto read = read_lut(file, runtime.path.record.get(), correction);
     if (!read) throw ScriptError{std::move(read).error()};
     const bool unit = gives_unit(*read);
@@ -179,11 +204,14 @@ const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::strin
 
 std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& file, bool raw) {
   Runtime& runtime = Runtime::of(lua);
-  auto& known = runtime.assets.pictures[{file, raw}];
-  if (known) return known;
+  Assets& assets = runtime.assets;
+  ReadPicture& known = assets.pictures[{file, raw}];
+  known.used = ++assets.uses;
+  if (known.data) return known.data;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  auto loaded = stored<ImageData>(runtime, "picture", file, raw ? "raw" : "", kMaxBytes, [&] {
+  known.key = key_of(runtime, "picture", file, raw ? "raw" : "", kMaxBytes);
+  auto loaded = stored<ImageData>(runtime, known.key, [&] {
     Diagnostics ignored;
     ReadOptions options;
     options.max_side = kMaxSide;
@@ -201,7 +229,7 @@ std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& fi
     return make_data(picture->color.size(), std::move(pixels), file, !picture->has_alpha && !matte);
   });
   count_data(runtime, loaded.get());
-  return known = std::move(loaded);
+  return known.data = std::move(loaded);
 }
 
 }  // namespace afterglow::script

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -38,12 +39,21 @@ struct LoadedOcio {
   Dependencies depends;  ///< on what it was made of
 };
 
-/// What one state has read: a file is read once, so that every build of a preset sees the same.
+/// A picture that was read.
+struct ReadPicture {
+  std::shared_ptr<const ImageData> data;
+  std::optional<Hash> key;  ///< of the store; none: it has none
+  std::uint64_t used = 0;   ///< Assets::uses of the last time
+};
+
+/// What one state has read: a file is read once, so that every build of a preset sees the same. Pictures that no graph
+/// holds any more may go when others need the room.
 struct Assets {
   /// By file and correction.
   std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const LoadedLut>> luts;
-  std::map<std::string, std::shared_ptr<const LoadedOcio>> ocio;                                ///< by request
-  std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const ImageData>> pictures;  ///< `raw` or not
+  std::map<std::string, std::shared_ptr<const LoadedOcio>> ocio;           ///< by request
+  std::map<std::pair<std::filesystem::path, bool>, ReadPicture> pictures;  ///< `raw` or not
+  std::uint64_t uses = 0;                                                  ///< of pictures, counted
   std::size_t bytes = 0;
   std::shared_ptr<AssetStore> store;  ///< what other states have read
   std::uint64_t look = 0;             ///< the store's number of this one; 0: it has asked for nothing yet
@@ -75,7 +85,8 @@ bool may_read(const Runtime& runtime, const std::filesystem::path& file);
 bool is_given_by_command(const Runtime& runtime, const std::string& name);
 std::shared_ptr<const ImageData> make_data(Size size, std::vector<float> pixels, const std::filesystem::path& file,
                                            bool opaque = false);
-/// Counts data that the state holds; null is nothing. Errors: throws ScriptError, when all of it takes too much memory.
+/// Counts data that the state is to hold; null is nothing. Pictures that no graph holds make room. Errors: throws
+/// ScriptError, when all of it takes too much memory.
 void count_data(Runtime& runtime, const ImageData* data);
 /// What the file held when this look, or whoever it shares a record with, read it first. None: it cannot be read.
 std::optional<Hash> content_seen(const Runtime& runtime, const std::filesystem::path& file, std::size_t limit);

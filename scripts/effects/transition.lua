@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Transition: from this picture to another, by `progress`. The other is a file (scaled to cover the picture), a layer of the picture's own file, or a plain colour. `progress` moves
 -- with the frames, as in progress = fx.curve { { 48, 0 }, { 60, 1 } }, or is an argument of the look (docs/composition.md). Another shot:
--- to = function(t) return string.format("next.%04d.exr", t.frame - 40) end, beside the preset; what a look reads may be 512 MiB in all, the length of a cut. Formulas: docs/math.md §34.
+-- to = function(t) return string.format("next.%04d.exr", t.frame - 40) end, beside the preset; pictures of frames that are done make room for those that come: what one frame reads may be 512 MiB. Formulas: docs/math.md §34.
 local fx = require "afterglow"
 
 local kKinds = { dissolve = 0, fade = 1, wipe = 2, iris = 3, clock = 4, blinds = 5, scatter = 6, push = 7 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What was made of tables, pictures and configurations serves the next look: counted, not timed.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <optional>
+#include <string>
 
 #include "core/file_record.h"
 #include "scene.h"
@@ -117,6 +120,46 @@ TEST_F(AssetStores, ConfigurationsAreKnownByAllThatDecides) {
   EXPECT_EQ(made(), 4u);
   unsetenv("AFTERGLOW_TEST_SHOT");
   unsetenv("AFTERGLOW_TEST_OTHER");
+}
+
+/// A frame may hold 512 MiB; what others held goes when it is in the way, from the state and from the store.
+TEST_F(AssetStores, PicturesByFrameMakeRoomForEachOther) {
+  for (int i = 0; i < 5; ++i) {
+    std::string values(std::size_t{4096} * 2048, '\x80');  // 128 MiB as floats, RGBA
+    values[0] = static_cast<char>('0' + i);
+    scene.write("p" + std::to_string(i) + ".pgm", "P5 4096 2048 255\n" + values);
+  }
+  scene.effect("shown", R"(
+      settings = { file = fx.file { extensions = { "pgm" }, doc = "Of the frame." },
+                   more = fx.int { default = 1, min = 1, max = 9, doc = "How many." } },
+      build = function(g, s, source)
+        for i = 1, s.more do
+          local file = i == 1 and s.file or "p" .. i - 1 .. ".pgm"
+          source = g:pass { shader = "shown/apply", source = source, picture = g:image { file = file } }
+        end
+        return source
+      end,)");
+  scene.write("shaders/shown/apply.glsl",
+              "uniform sampler2D picture;\nvec4 apply(vec4 color) { return color + fetch(picture, ivec2(0)); }\n");
+  scene.stack("fx.shown { file = function(t) return 'p' .. math.floor(t.frame) .. '.pgm' end }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  std::optional<Graph> held;  // as a frame holds it that is still being drawn
+  for (const int frame : {0, 1, 2, 3, 4, 0}) {
+    scene.context.frame = frame;
+    auto graph = scene.build(*preset);
+    ASSERT_TRUE(graph) << "frame " << frame << ": " << graph.error().text();
+    held = std::move(*graph);
+    EXPECT_LE(store->kept(), 4u) << "frame " << frame;
+  }
+  EXPECT_EQ(store->made(), 6u) << "p0 had made room for others, and was read again";
+  scene.context.frame = 4;
+  ASSERT_TRUE(scene.build(*preset));
+  EXPECT_EQ(store->made(), 6u) << "what nothing is in the way of stays";
+
+  scene.stack("fx.shown { file = 'p0.pgm', more = 5 }");
+  EXPECT_THAT(scene.build_error(),
+              testing::HasSubstr("'p4.pgm' and what the look reads besides take more than 512 MiB"));
 }
 
 }  // namespace
