@@ -202,8 +202,8 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--pix-fmt", a.pixel_format},
           {"--audio", a.audio},
           {"--compression", a.compression},
-          {"--png-level", fmt::format("{}", a.png_level)},
-          {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
+          {"--png-level", fmt::format("{}", a.png_level.value_or(1))},
+          {"--jpeg-quality", fmt::format("{}", a.jpeg_quality.value_or(95))},
           {"--dither", a.dither},
           {"--keep-layers", flag(a.keep_layers)}};
 }

@@ -18,7 +18,7 @@ struct RunArguments {
   LayerArguments layers;
   std::string output_space, size, region;
   std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
-  int png_level = 1, jpeg_quality = 95;
+  std::optional<int> png_level, jpeg_quality;
   std::string codec, bitrate, pixel_format, audio;
   std::optional<int> crf;
   bool keep_partial = false, keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;

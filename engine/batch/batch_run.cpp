@@ -243,8 +243,10 @@ bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {
   FrameLoopOptions& loop = request.loop;
   if (!std::exchange(loop.takes_fps, false) || !is_one_output(request.files.output)) return false;
   if (frames.empty() || frames.front().movie) return false;
-  const auto header = read_header(frames.front().input, loop.read);
-  if (!header) return false;  // told where it is read
+  std::vector<const FrameJob*> jobs;
+  for (const FrameJob& job : frames) jobs.push_back(&job);
+  const auto header = first_header(jobs, loop.read);
+  if (!header) return false;  // told where they are read
   const double said = said_fps(*header->facts);
   if (said <= 0) return false;
   loop.fps = said;

@@ -9,9 +9,9 @@ namespace afterglow {
 namespace {
 
 /// `part` of rows of `width` pixels.
-template <class Value>
-std::vector<Value> cut(const std::vector<Value>& pixels, int width, int channels, const Rect& part) {
-  std::vector<Value> out;
+template <class Values>
+Values cut(const Values& pixels, int width, int channels, const Rect& part) {
+  Values out;
   out.reserve(static_cast<std::size_t>(part.size().area() * channels));
   for (int y = 0; y < part.height; ++y) {
     const auto row = pixels.begin() + (static_cast<std::ptrdiff_t>(part.y + y) * width + part.x) * channels;

@@ -26,13 +26,6 @@ Result<LayerChoice> resolve(const LayerChoice& choice, int frame) {
   return LayerChoice{pattern.existing(frame), choice.name};
 }
 
-/// What files that a shell has listed have in common when they are frames of one sequence. No pattern that exists.
-std::string name_without_number(const fs::path& file) {
-  std::string stem = file.stem().string();
-  while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
-  return (file.parent_path() / stem).string() + "*" + file.extension().string();
-}
-
 /// Whether it can be made: what it lies in is there.
 Result<void> check_new_folder(const fs::path& folder) {
   std::error_code ec;
@@ -268,11 +261,12 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
   const bool held = names.takes_all() && request.inputs.size() == 1;
   if (pattern.numbered && !frames) AFTERGLOW_CHECK(tell_gaps(input, files, held, diagnostics));
   for (const auto& [frame, file] : files) {
-    AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : name_without_number(file), {frame, file}));
+    // Files that a shell has listed are frames of one sequence when they have that name in common.
+    AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : without_frame_number(file), {frame, file}));
     job.output = names.name(file, frame);
     list.jobs.push_back(std::move(job));
   }
-  if (pattern.numbered && !frames && held) hold_missing(list.jobs);
+  if (pattern.numbered && (!frames || request.holds) && held) hold_missing(list.jobs);
   return {};
 }
 

@@ -46,6 +46,7 @@ struct FrameListRequest {
   std::string raw;                       ///< --raw: how frames on standard input lie
   SizeLimits limits{};                   ///< of videos and of what comes on standard input
   std::string frames;                    ///< "1-24x2"; empty: all that exist
+  bool holds = false;                    ///< of `frames` that are not there the one before is held, as without `frames`
   std::vector<std::string> frames_of{};  ///< of each input, in its place; empty: `frames` is of all
   LayerChoice depth, normal, motion, mattes{};
 };

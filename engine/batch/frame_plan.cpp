@@ -111,7 +111,7 @@ BuildContext FramePlanner::context_of(const FrameJob& job, const PictureHeader& 
   const Shape shape = shape_of(header);
   context.length_scale = shape.length_scale;
   context.size = shape.size();
-  const auto wanted = session_.preset().needs();
+  const auto& wanted = session_.preset().needs();
   for (const auto& name : header.auxiliary)
     if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
   context.layers = header.layers;

@@ -45,6 +45,19 @@ std::vector<FrameRecord*> waiting_by_number(const Sequence& sequence) {
   return out;
 }
 
+/// Those that wait, in the order in which they were given: frames of one sequence by rising numbers, as often as the
+/// sequence changes or the numbers fall.
+std::vector<Sequence> waiting_in_order(FrameRecords& records) {
+  std::vector<Sequence> out;
+  for (FrameRecord& record : records) {
+    if (record.state != FrameRecord::State::waiting) continue;
+    const FrameJob* last = out.empty() ? nullptr : &out.back().back()->job;
+    if (!last || last->sequence != record.job.sequence || last->frame >= record.job.frame) out.emplace_back();
+    out.back().push_back(&record);
+  }
+  return out;
+}
+
 /// The frames before `frame`, nearest first: `most` of them, fewer where `stop` is met.
 std::vector<const FrameJob*> before(const Frames& frames, int frame, int most, const int* stop) {
   std::vector<const FrameJob*> out;
@@ -116,8 +129,14 @@ Schedule plain_schedule(FrameRecords& frames) {
 
 Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll) {
   Schedule out;
-  for (const auto& sequence : sequences_of(frames))
-    add_sequence(out, frames_of(sequence, request), waiting_by_number(sequence), pre_roll);
+  std::map<std::string, Frames> there;
+  for (const auto& sequence : sequences_of(frames)) {
+    const auto known = there.emplace(sequence.front()->job.sequence, frames_of(sequence, request)).first;
+    if (!is_one_output(request.output)) add_sequence(out, known->second, waiting_by_number(sequence), pre_roll);
+  }
+  if (is_one_output(request.output))
+    for (const auto& run : waiting_in_order(frames))
+      add_sequence(out, there.at(run.front()->job.sequence), run, pre_roll);
   return counted(std::move(out));
 }
 

@@ -27,7 +27,8 @@ struct Schedule {
 /// For a stack without histories: the frames that wait, in their order.
 Schedule plain_schedule(FrameRecords& frames);
 
-/// Each sequence by ascending numbers, whatever order was asked for. The frame before a frame is the one with the next
+/// Each sequence by ascending numbers, whatever order was asked for; where all frames go into one output, that order,
+/// and what is not behind the frame before it begins anew. The frame before a frame is the one with the next
 /// lower number that there is: among those asked for, and for numbered inputs on disk. So many frames before each frame
 /// run first (`pre_roll`, as far as there are any), unless they run anyway; where the frames between two that are asked
 /// for are more than that, the second begins anew. Frames that are up to date run as pre-roll where they are needed.

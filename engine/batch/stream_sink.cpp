@@ -78,9 +78,12 @@ class FrameBytes {
 class PictureBytes : public FrameBytes {
  public:
   PictureBytes(std::string format, const WriteOptions& options, Diagnostics& diagnostics)
-      : format_(std::move(format)), options_(options), diagnostics_(diagnostics) {}
+      : format_(std::move(format)), options_(options), once_([&](Severity severity, const std::string& message) {
+          const std::string text = fmt::format("{}: {}", kName, message);
+          severity == Severity::warning ? diagnostics.warn_once(text, text) : diagnostics.note(text);
+        }) {}
   Result<std::string> frame(const Picture& picture) override {
-    return picture_bytes(picture, format_, options_, diagnostics_);
+    return picture_bytes(picture, format_, options_, once_);
   }
   bool many() const override {
     constexpr std::array<std::string_view, 5> kStreams{"ppm", "pnm", "pam", "pfm", "png"};
@@ -90,7 +93,7 @@ class PictureBytes : public FrameBytes {
  private:
   std::string format_;
   WriteOptions options_;
-  Diagnostics& diagnostics_;
+  Diagnostics once_;  ///< what all frames say is said once
 };
 
 /// Frames of a y4m or raw video.

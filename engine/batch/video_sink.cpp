@@ -37,6 +37,11 @@ class VideoSink : public FrameSink {
       return Error{ErrorKind::usage, "--type is for pictures; a video has --pix-fmt", file_.string()};
     if (!options_.compression.empty())
       return Error{ErrorKind::usage, "--compression is for pictures; a video has --codec and --crf", file_.string()};
+    if (options_.png_level || options_.jpeg_quality)
+      return Error{ErrorKind::usage,
+                   fmt::format("{} is for pictures; a video has --codec and --crf",
+                               options_.png_level ? "--png-level" : "--jpeg-quality"),
+                   file_.string()};
     AFTERGLOW_TRY(const VideoPlan plan, plan_video(file_, options_, false, false));
     AFTERGLOW_CHECK(check_video_encoder(plan, file_));
     AFTERGLOW_CHECK(check_place(file_));
@@ -110,6 +115,10 @@ class VideoSink : public FrameSink {
           "hdr metadata", fmt::format("{}: what the input says of its display and its brightest light (HDR10) is not "
                                       "kept: it was of other pictures",
                                       file_.string()));
+    if (job.passing && job.movie && job.movie->facts().sound && plan.audio.empty() && !options_.video.piece)
+      diagnostics_.warn_once("sound of a stream",
+                             fmt::format("{}: the sound of {} is not copied; --audio takes it from a file",
+                                         file_.string(), job.input.string()));
     if (plan.container == "gif") AFTERGLOW_CHECK(check_hundredths(job, plan));
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));

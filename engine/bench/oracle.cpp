@@ -39,8 +39,7 @@ void add_entries(const std::vector<StackEntry>& entries, std::size_t begin, std:
                  std::vector<reference::Entry>& out) {
   for (std::size_t i = begin; i < end;) {
     const StackEntry& entry = entries[i];
-    const std::size_t first = i + 1, middle = first + static_cast<std::size_t>(entry.middle),
-                      last = first + static_cast<std::size_t>(entry.members);
+    const std::size_t first = entry.first_of(i), middle = entry.middle_of(i), last = entry.end_of(i);
     i = last;
     if (!entry.enabled || std::ranges::find(graph.skipped, entry.name, &Skipped::name) != graph.skipped.end()) continue;
     const std::size_t at = out.size();

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -44,12 +43,12 @@ inline void use_small_pages() {
 }
 
 /// As values.resize(count). What it holds may go where it is too small.
-template <class Value>
-void resize_for_picture(std::vector<Value>& values, std::size_t count) {
+template <class Values>
+void resize_for_picture(Values& values, std::size_t count) {
   if (values.capacity() < count) {
     release_memory(values);
     values.reserve(count);
-    use_large_pages(values.data(), count * sizeof(Value));
+    use_large_pages(values.data(), count * sizeof(values[0]));
   }
   values.resize(count);
 }

@@ -43,14 +43,14 @@ std::size_t unit_end(const StackShape& shape, std::size_t i) {
 
 std::optional<std::size_t> neighbour_of(const Preset& preset, std::size_t i, bool later) {
   const auto& entries = preset.entries();
-  const auto end_of = [&](std::size_t at) { return at + 1 + static_cast<std::size_t>(entries[at].members); };
+  const auto end_of = [&](std::size_t at) { return entries[at].end_of(at); };
   // The list that it stands in: of the whole stack, of the group around it, of one look of a mix.
   std::size_t first = 0, last = entries.size();
   for (std::size_t p = 0; p < i; ++p) {
     if (entries[p].depth + 1 != entries[i].depth || end_of(p) <= i) continue;
     first = p + 1;
     last = end_of(p);
-    const std::size_t middle = first + static_cast<std::size_t>(entries[p].middle);
+    const std::size_t middle = entries[p].middle_of(p);
     if (middle > first) (i < middle ? last : first) = middle;
   }
   if (later) return end_of(i) < last ? std::optional(end_of(i)) : std::nullopt;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/hash.h"
+#include "core/unset_vector.h"
 #include "exec/program.h"
 #include "graph/condition.h"
 
@@ -42,7 +43,7 @@ struct HostResult {
   /// that are large enough already are not allocated again.
   std::vector<float> pixels;
   /// Instead of `pixels`, of a program with ProgramOptions::unorm8: RGBA. Empty behind others, whatever it held.
-  std::vector<std::uint8_t> unorm8;
+  UnsetVector<std::uint8_t> unorm8;
   std::uint64_t clamped = 0;  ///< half storage: source or result samples held at ±65504
   /// Of a program with ProgramOptions::flag_non_finite: some alpha is 0. Such a program's `pixels` have no other alpha.
   bool flagged = false;

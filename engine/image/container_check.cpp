@@ -97,18 +97,28 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
   }
 }
 
-/// The product of all EXPOSURE lines of a Radiance header. Errors: io (it holds XYZ, which OpenImageIO does not know).
-Result<double> radiance_exposure(const fs::path& file, std::span<const unsigned char> head) {
+/// From a Radiance header the product of all EXPOSURE lines, and the order of columns. Errors: io (it holds XYZ, which
+/// OpenImageIO does not know).
+Result<void> read_radiance_header(const fs::path& file, std::span<const unsigned char> head, ContainerFacts& facts) {
   double product = 1;
   std::istringstream lines(std::string(head.begin(), head.end()));
-  for (std::string line; std::getline(lines, line) && !line.empty();) {
+  std::string line;
+  while (std::getline(lines, line) && !line.empty()) {
     if (line.starts_with("FORMAT=32-bit_rle_xyze"))
       return malformed(file, "holds CIE XYZ (32-bit_rle_xyze), which is not read; write it as 32-bit_rle_rgbe");
     if (!line.starts_with("EXPOSURE=")) continue;
     const double exposure = std::strtod(line.c_str() + 9, nullptr);
     if (std::isfinite(exposure) && exposure > 0) product *= exposure;
   }
-  return product > 1e-30 && product < 1e30 ? product : 1;
+  if (product > 1e-30 && product < 1e30) facts.exposure = product;
+  // "+X 4 +Y 3": columns from left to right, each upwards. OpenImageIO 2.4 takes it and "-X 4 -Y 3" for each other.
+  std::string columns, rows;
+  int width = 0, height = 0;
+  if (lines >> columns >> width >> rows >> height) {
+    if (columns == "-X" && rows == "-Y") facts.orientation = 6;
+    if (columns == "+X" && rows == "+Y") facts.orientation = 8;
+  }
+  return {};
 }
 
 }  // namespace
@@ -160,7 +170,7 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   }
   if (format == "heif") claimed = heif_size(in, size);
   if (format == "hdr") {
-    AFTERGLOW_TRY(facts.exposure, radiance_exposure(file, head));
+    AFTERGLOW_CHECK(read_radiance_header(file, head, facts));
   }
   if (format == "jpeg2000") {
     AFTERGLOW_TRY(claimed, check_jpeg2000(file, in, size));

@@ -21,8 +21,9 @@ struct ContainerFacts {
   std::uint64_t least_file_bytes = 0;       ///< fewer cannot hold the pixels, however well they compress
   std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
   bool fourth_is_padding = false;           ///< BMP, Targa: the fourth byte of a pixel means nothing
-  std::optional<DeepPnm> deep_pnm;          ///< PNM of more than eight bits
+  std::optional<DeepPnm> deep_pnm;          ///< PNM with another largest value than 255
   double exposure = 1;                      ///< Radiance: what the light was multiplied by
+  std::optional<int> orientation;           ///< Radiance: as Exif has it, where the library is wrong
   bool srgb = false;                        ///< PNG sRGB chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
   std::optional<Chromaticities> primaries;  ///< PNG cHRM

@@ -10,7 +10,7 @@ namespace afterglow {
 
 void open_color(Picture& picture, std::vector<float> memory) {
   if (picture.halves.empty()) return;
-  const std::vector<std::uint16_t> halves = std::move(picture.halves);
+  const UnsetVector<std::uint16_t> halves = std::move(picture.halves);
   picture.halves.clear();
   resize_for_picture(memory, halves.size());
   const Image& color = picture.color;

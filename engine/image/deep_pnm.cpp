@@ -12,7 +12,7 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMostOfByte = 255, kMostOfPnm = 65535;
+constexpr int kMostOfBit = 1, kMostOfByte = 255, kMostOfPnm = 65535;
 
 /// The next number of text, behind white space and comments.
 std::optional<int> next_number(std::istream& in) {
@@ -44,11 +44,12 @@ Result<std::optional<DeepPnm>> deep_pnm(const fs::path& file, std::ifstream& in,
   if (!width || !height || !most) return std::optional<DeepPnm>();  // OpenImageIO says what is wrong
   if (*most < 1 || *most > kMostOfPnm)
     return malformed(file, fmt::format("says that {} is its largest value; a PNM has 1 to {}", *most, kMostOfPnm));
-  if (*most <= kMostOfByte || *width < 1 || *height < 1) return std::optional<DeepPnm>();
+  if (*most == kMostOfBit || *most == kMostOfByte || *width < 1 || *height < 1) return std::optional<DeepPnm>();
   DeepPnm form{{*width, *height}, kind == '3' || kind == '6' ? 3 : 1, *most, kind < '5'};
   form.data_at = static_cast<std::uint64_t>(in.tellg());
-  // Two bytes a sample: of text, a digit and what parts it from the next one.
-  if (file_size + 1 < form.data_at + 2 * form.samples()) return ends_too_early(file).error();
+  // Of text, a digit and what parts it from the next one.
+  const std::uint64_t bytes = form.text ? 2 : form.sample_bytes();
+  if (file_size + 1 < form.data_at + bytes * form.samples()) return ends_too_early(file).error();
   return std::optional(form);
 }
 
@@ -68,11 +69,13 @@ Result<std::vector<float>> read_deep_pnm(const fs::path& file, const DeepPnm& fo
     return samples;
   }
   const std::size_t row = static_cast<std::size_t>(form.size.width) * static_cast<std::size_t>(form.channels);
-  std::vector<unsigned char> bytes(2 * row);
+  const std::size_t size = form.sample_bytes();
+  std::vector<unsigned char> bytes(size * row);
   for (std::size_t at = 0; at < samples.size(); at += row) {
     if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())))
       return ends_too_early(file);
-    for (std::size_t i = 0; i < row; ++i) samples[at + i] = value(bytes[2 * i] << 8 | bytes[2 * i + 1]);
+    for (std::size_t i = 0; i < row; ++i)
+      samples[at + i] = value(size == 1 ? bytes[i] : bytes[2 * i] << 8 | bytes[2 * i + 1]);
   }
   return samples;
 }

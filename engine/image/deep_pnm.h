@@ -16,10 +16,11 @@ namespace afterglow {
 
 struct DeepPnm {
   Size size;
-  int channels = 1;           ///< 1 or 3
-  int most = 65535;           ///< what stands for 1
-  bool text = false;          ///< numbers, not bytes
-  std::uint64_t data_at = 0;  ///< of the first sample
+  int channels = 1;                                                ///< 1 or 3
+  int most = 65535;                                                ///< what stands for 1
+  bool text = false;                                               ///< numbers, not bytes
+  std::uint64_t data_at = 0;                                       ///< of the first sample
+  std::size_t sample_bytes() const { return most > 255 ? 2 : 1; }  ///< unless it is text
   std::uint64_t samples() const {
     return static_cast<std::uint64_t>(size.area()) * static_cast<std::uint64_t>(channels);
   }

@@ -76,6 +76,9 @@ class FfmpegStream : public MovieFrames {
     if (frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) return broken("is damaged");
     if (count_ == 0) {
       facts_ = facts_of(*input_, *frame);
+      const AVFormatContext& container = input_->container();
+      for (unsigned i = 0; i < container.nb_streams; ++i)
+        if (container.streams[i]->codecpar->codec_type == AVMEDIA_TYPE_AUDIO) facts_.sound = true;
       fill_in(facts_);
     }
     if (frame->width != facts_.stored.width || frame->height != facts_.stored.height)

@@ -48,6 +48,7 @@ struct MovieFacts {
   int bits = 8;  ///< of a sample
   bool interlaced = false;
   bool pictures_alone = false;  ///< the file has room for nothing else
+  bool sound = false;           ///< of what cannot be sought in: there is sound beside the pictures
   bool hdr_metadata = false;    ///< it says which display it was made on, or how bright it gets (HDR10)
   MovieColor color;
   Rational rate{0, 1};         ///< frames a second, on the average; 0: unknown

@@ -17,13 +17,13 @@ constexpr const char* kNoColor = "is damaged: a pixel has a colour that its tabl
 
 /// Whether every pixel of a Targa has a colour; where it ends too early its reader says so.
 bool targa_colors_exist(std::span<const unsigned char> bytes, bool packed) {
-  const std::uint32_t first = little_endian(&bytes[3], 2), colors = little_endian(&bytes[5], 2);
+  const std::uint32_t colors = little_endian(&bytes[5], 2);
   const std::size_t pixel = (bytes[16] + 7u) / 8;
   const std::uint64_t pixels = std::uint64_t{little_endian(&bytes[12], 2)} * little_endian(&bytes[14], 2);
   if (pixel < 1 || pixel > 4) return false;  // of none it would never come to an end
   std::size_t at = 18u + bytes[0] + std::size_t{colors} * ((bytes[7] + 7u) / 8);
   const auto exists = [&] {
-    const std::uint64_t number = std::uint64_t{little_endian(&bytes[at], pixel)} + first;
+    const std::uint64_t number = little_endian(&bytes[at], pixel);
     at += pixel;
     return number < colors;
   };
@@ -117,14 +117,18 @@ Result<ClaimedSize> check_targa(const std::filesystem::path& file, std::ifstream
   const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
   if (bytes.size() < 18) return malformed(file, "is truncated");
   const unsigned kind = bytes[2];
-  if ((kind == 1 || kind == 9) && !targa_colors_exist(bytes, kind == 9)) return malformed(file, kNoColor);
+  if (kind == 1 || kind == 9) {
+    if (little_endian(&bytes[3], 2) != 0)
+      return malformed(file, "has a table of colours that does not begin at 0, which is not read; write it anew");
+    if (!targa_colors_exist(bytes, kind == 9)) return malformed(file, kNoColor);
+  }
   if (!targa_texts_end(bytes)) return malformed(file, "is damaged: a text of its extension has no end");
   return ClaimedSize{{static_cast<int>(little_endian(&bytes[12], 2)), static_cast<int>(little_endian(&bytes[14], 2))},
                      4};
 }
 
 Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, std::ifstream& in) {
-  constexpr std::uint32_t kOldHeader = 12, kRuns8 = 1, kRuns4 = 2;
+  constexpr std::uint32_t kOldHeader = 12, kRuns8 = 1, kRuns4 = 2, kMasks = 3;
   std::array<unsigned char, 34> head{};
   in.seekg(0);
   if (!fill(in, head.data(), head.size())) return malformed(file, "is truncated");
@@ -134,6 +138,14 @@ Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, 
     return static_cast<int>(std::min<std::int64_t>(std::abs(std::int64_t{length}), 0x7fffffff));
   };
   const std::uint32_t bits = little_endian(&head[28], 2), packing = little_endian(&head[30], 4);
+  if (packing == kMasks && bits == 32) {  // OpenImageIO 2.4 looks at those of 16 bits alone
+    std::array<unsigned char, 12> masks{};
+    in.seekg(54);
+    if (!fill(in, masks.data(), masks.size())) return malformed(file, "is truncated");
+    if (little_endian(masks.data(), 4) != 0xff0000 || little_endian(&masks[4], 4) != 0xff00 ||
+        little_endian(&masks[8], 4) != 0xff)
+      return malformed(file, "holds its channels in an order that is not read; write it anew");
+  }
   if (packing != kRuns8 && packing != kRuns4) return std::optional<ClaimedSize>();
   if (bits != 8 && bits != 4) return malformed(file, "is damaged: only pictures of 4 or 8 bits are packed so");
   return std::optional(ClaimedSize{{side(18), side(22)}, 1});

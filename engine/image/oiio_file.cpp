@@ -93,7 +93,10 @@ class OiioFile : public PictureFile {
     if (color.channels[3] >= 0) encoding.alpha = straight ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();
-    if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
+    if (container_.deep_pnm)
+      encoding.max_code = container_.deep_pnm->most;
+    else if (integer && type.size() <= 2)
+      encoding.max_code = type.size() == 1 ? 255 : 65535;
     encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
     encoding.gain = 1 / container_.exposure;
     const bool png = container_.kind == ContainerFacts::Kind::png;
@@ -128,6 +131,7 @@ class OiioFile : public PictureFile {
         facts.color_channels[i] =
             parts_[static_cast<std::size_t>(color.part)].channels[static_cast<std::size_t>(color.channels[i])];
     facts.metadata = metadata_of(spec.extra_attribs);
+    if (format_ == "jpeg") correct_jpeg_shape(facts.metadata);
     return facts;
   }
 
@@ -153,7 +157,7 @@ class OiioFile : public PictureFile {
         part.data_window = {0, 0, spec.width, spec.height};
         part.display_window = part.data_window;
       }
-      part.orientation = std::clamp(spec.get_int_attribute("Orientation", 1), 1, 8);
+      part.orientation = container_.orientation.value_or(std::clamp(spec.get_int_attribute("Orientation", 1), 1, 8));
       part.channels = spec.channelnames;
       if (container_.fourth_is_padding && part.channels.size() == 4) part.channels.pop_back();
       if (i > 0) part.name = spec.get_string_attribute("oiio:subimagename", fmt::format("page{}", i + 1));
@@ -196,7 +200,26 @@ class OiioFile : public PictureFile {
     // OpenImageIO 2.4 returns true, and black, for strips of a TIFF that are damaged or missing; but it says so.
     const std::string why = input_->geterror();
     if (!read || !why.empty()) return failed(message_of(why));
+    if (white_is_zero(spec)) turn_samples(spec, first, channels);
     return {};
+  }
+
+  /// A TIFF of integers whose 0 is white.
+  bool white_is_zero(const OIIO::ImageSpec& spec) const {
+    constexpr int kWhiteIsZero = 0;
+    return format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == kWhiteIsZero &&
+           !spec.format.is_floating_point();
+  }
+
+  /// What OpenImageIO has not turned round: of more than 8 bits no sample; of 8 all, alpha too, which goes back.
+  static void turn_samples(const OIIO::ImageSpec& spec, const ReadTarget& first, int channels) {
+    const bool deep = spec.format.size() > 1;
+    for (std::size_t y = 0; y < static_cast<std::size_t>(spec.height); ++y)
+      for (std::size_t x = 0; x < static_cast<std::size_t>(spec.width); ++x)
+        for (int c = 0; c < channels; ++c) {
+          float& value = first.base[y * first.row_stride + x * first.pixel_stride + static_cast<std::size_t>(c)];
+          if ((first.channel + c != spec.alpha_channel) == deep) value = 1 - value;
+        }
   }
 
   Result<void> read_pnm(const ReadTarget& first, int channels) const {

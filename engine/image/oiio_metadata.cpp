@@ -71,6 +71,20 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
   return metadata;
 }
 
+void correct_jpeg_shape(Metadata& metadata) {
+  constexpr const char* kShape = "PixelAspectRatio";
+  const auto number = [&](const char* name) {
+    const MetadataValue* value = find_metadata(metadata, name);
+    return value ? metadata_number(*value, 0) : 0.0f;
+  };
+  const MetadataValue* unit = find_metadata(metadata, "ResolutionUnit");
+  const std::string text = unit ? metadata_text(*unit) : "";
+  const float x = number("XResolution"), y = number("YResolution");
+  if (!(text.starts_with("in") || text.starts_with("cm")) || !(x > 0 && y > 0)) return;
+  std::erase_if(metadata, [&](const MetadataEntry& entry) { return entry.name == kShape; });
+  if (x != y) metadata.push_back({kShape, y / x});
+}
+
 OIIO::ParamValueList param_list(const Metadata& metadata) {
   OIIO::ParamValueList list;
   for (const auto& [name, value] : metadata) {

@@ -9,6 +9,10 @@
 namespace afterglow {
 
 Metadata metadata_of(const OIIO::ParamValueList& list);
+/// Of a JPEG: where the two resolutions are dots in an inch or a centimetre, a pixel's shape is that of their
+/// distances. OpenImageIO 2.4 takes them for its width and height, as they are without a unit.
+void correct_jpeg_shape(Metadata& metadata);
+
 OIIO::ParamValueList param_list(const Metadata& metadata);
 
 }  // namespace afterglow

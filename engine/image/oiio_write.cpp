@@ -99,13 +99,17 @@ const char* film_transfer(const StripForm& form) {
                              : "User defined";
 }
 
-/// Without a unit the two resolutions say the shape of a pixel alone: JPEG's are its width and height, TIFF's are dots
-/// across and down.
+/// With a unit the two resolutions say the shape of a pixel. Without one they say it alone: JPEG's are its width and
+/// height then, TIFF's dots across and down.
 void describe_shape(OIIO::ImageSpec& spec, bool widths) {
   constexpr float kDots = 72, kMost = 100;
   const std::string unit = lower(spec.get_string_attribute("ResolutionUnit"));
   const float ratio = spec.get_float_attribute("PixelAspectRatio", 1);
-  if (unit.starts_with("in") || unit.starts_with("cm") || unit == "m" || ratio == 1) return;
+  if (unit.starts_with("in") || unit.starts_with("cm") || unit == "m") {
+    if (widths) spec.erase_attribute("PixelAspectRatio");  // of which the library would make another resolution
+    return;
+  }
+  if (ratio == 1) return;
   if (!(ratio > 1 / kMost && ratio < kMost)) return;
   spec.attribute("XResolution", std::round(widths ? kDots * ratio : kDots));
   spec.attribute("YResolution", std::round(widths ? kDots : kDots * ratio));
@@ -132,7 +136,7 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
       spec.attribute("compression", compression.name.empty() ? "rle" : compression.name);
       break;
     case OutputKind::jpeg:
-      spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
+      spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality.value_or(95), 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
       describe_shape(spec, true);
       break;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/hash.h"
+#include "core/unset_vector.h"
 #include "image/image.h"
 #include "image/non_finite.h"
 
@@ -51,9 +52,9 @@ struct Picture {
   std::map<std::string, Hash> content;
   /// When not empty, the pixels of `color` as half floats, RGBA, in place of color.pixels, which are empty then: of
   /// readers that were allowed to (ReadOptions::halves). Whoever wants floats calls open_color or color_row.
-  std::vector<std::uint16_t> halves;
+  UnsetVector<std::uint16_t> halves;
   /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
-  std::vector<std::uint8_t> unorm8;
+  UnsetVector<std::uint8_t> unorm8;
   /// Its light stands for codes of a display's view, by the sRGB curve: integers are those codes, and no file says that
   /// they are sRGB.
   bool view = false;

@@ -22,10 +22,10 @@ auto take_last(Kind& kind) {
 }  // namespace
 
 /// Memory of one kind for so many values. What was for another size goes first.
-template <class Value>
-std::vector<Value> PixelMemory::take(Kind<Value> Kept::*kind, std::size_t count) {
+template <class Values>
+Values PixelMemory::take(Kind<Values> Kept::*kind, std::size_t count) {
   Kept others;  // goes after the lock
-  std::vector<Value> values;
+  Values values;
   {
     const std::lock_guard lock(mutex_);
     if (count_ != count) {
@@ -42,9 +42,9 @@ std::vector<Value> PixelMemory::take(Kind<Value> Kept::*kind, std::size_t count)
 }
 
 std::vector<float> PixelMemory::take(std::size_t count) { return take(&Kept::pixels, count); }
-std::vector<std::uint16_t> PixelMemory::take_halves(std::size_t count) { return take(&Kept::halves, count); }
+UnsetVector<std::uint16_t> PixelMemory::take_halves(std::size_t count) { return take(&Kept::halves, count); }
 
-std::vector<std::uint8_t> PixelMemory::take_codes() {
+UnsetVector<std::uint8_t> PixelMemory::take_codes() {
   const std::lock_guard lock(mutex_);
   return take_last(kept_.codes);
 }

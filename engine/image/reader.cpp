@@ -132,7 +132,7 @@ Result<bool> read_halves(const ReadPlan& plan, const ColorEncoding& encoding, co
   if (plan.color_part().orientation > 1 || !stays_half(encoding)) return false;
   if (picture.data_window != upright_data(plan.color_part())) return false;
   const Size size = picture.data_window.size();
-  std::vector<std::uint16_t> halves = options.memory->take_halves(static_cast<std::size_t>(size.area()) * 4);
+  UnsetVector<std::uint16_t> halves = options.memory->take_halves(static_cast<std::size_t>(size.area()) * 4);
   HalfColors colors(halves.data(), size.width, encoding.keep_negative);
   AFTERGLOW_TRY(const bool read, plan.file->read_halves(plan.color, halves.data(),
                                                         [&](int begin, int end) { colors.take_rows(begin, end); }));

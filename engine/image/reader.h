@@ -28,25 +28,25 @@ class PixelMemory {
   /// So many values; they may be anything.
   std::vector<float> take(std::size_t count);
   /// For 8-bit codes: what a picture had them in, or empty.
-  std::vector<std::uint8_t> take_codes();
+  UnsetVector<std::uint8_t> take_codes();
   /// For half floats.
-  std::vector<std::uint16_t> take_halves(std::size_t count);
+  UnsetVector<std::uint16_t> take_halves(std::size_t count);
   /// Takes the picture, and keeps what it has of that memory.
   void give(Picture&& picture);
 
  private:
-  template <class Value>
+  template <class Values>
   struct Kind {
-    std::vector<std::vector<Value>> free;
+    std::vector<Values> free;
     std::size_t out = 0;  ///< taken and not given back: no more are kept, as pictures also bring memory of their own
   };
   struct Kept {
-    Kind<float> pixels;
-    Kind<std::uint8_t> codes;
-    Kind<std::uint16_t> halves;
+    Kind<std::vector<float>> pixels;
+    Kind<UnsetVector<std::uint8_t>> codes;
+    Kind<UnsetVector<std::uint16_t>> halves;
   };
-  template <class Value>
-  std::vector<Value> take(Kind<Value> Kept::*kind, std::size_t count);
+  template <class Values>
+  Values take(Kind<Values> Kept::*kind, std::size_t count);
 
   std::mutex mutex_;
   std::size_t count_ = 0;  ///< that was asked for last

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxFrames = 1'000'000;
-constexpr int kMaxDigits = 9;  // what always fits an int
 
 Error bad_frames(const std::string& text, const std::string& why) {
   return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0,
@@ -60,12 +59,11 @@ Result<Range> parse_range(const std::string& text, std::string_view part) {
   return range;
 }
 
-/// A file's own number, at the end of its name's stem; 1 without one.
+/// A file's own number; 1 without one.
 int own_number(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const std::string number = stem.substr(number_begin(stem, stem.size()));
-  const std::size_t digits = number.size() - (number.starts_with('-') ? 1 : 0);
-  return digits == 0 || digits > kMaxDigits ? 1 : std::stoi(number);
+  const FrameNumber number = frame_number(file);
+  if (number.digits == 0 || number.digits > kMostFrameDigits) return 1;
+  return std::stoi(file.stem().string().substr(number.begin, number.end - number.begin));
 }
 
 /// Digits, and a sign in front of them.
@@ -128,6 +126,23 @@ std::size_t number_begin(std::string_view name, std::size_t end) {
   const bool sign = begin < end && begin > 0 && name[begin - 1] == '-' &&
                     (begin == 1 || name[begin - 2] == '.' || name[begin - 2] == '_');
   return sign ? begin - 1 : begin;
+}
+
+FrameNumber frame_number(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  std::size_t end = stem.size();
+  while (end > 0 && !is_digit(stem[end - 1])) --end;
+  const std::size_t begin = number_begin(stem, end);
+  const std::size_t sign = begin < end && stem[begin] == '-' ? 1 : 0;
+  return {begin, end, static_cast<int>(end - begin - sign)};
+}
+
+std::string without_frame_number(const fs::path& file) {
+  const FrameNumber number = frame_number(file);
+  std::string name = file.filename().string();
+  if (number.digits > 0 && number.digits <= kMostFrameDigits)
+    name.replace(number.begin, number.end - number.begin, "*");
+  return (file.parent_path() / name).string();
 }
 
 Result<std::vector<int>> parse_frames(const std::string& text) {
@@ -226,7 +241,8 @@ Result<Pattern> parse_pattern(const std::string& text) {
   if (places.empty()) return Pattern{plain, "", 0, false};
   if (places.size() > 1) return bad_pattern(text, "has more than one place for the frame number");
   const Place place = places.front();
-  if (place.digits > kMaxDigits) return bad_pattern(text, fmt::format("asks for more than {} digits", kMaxDigits));
+  if (place.digits > kMostFrameDigits)
+    return bad_pattern(text, fmt::format("asks for more than {} digits", kMostFrameDigits));
   return Pattern{plain.substr(0, place.begin), plain.substr(place.begin), std::max(place.digits, 1), true};
 }
 

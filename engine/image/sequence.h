@@ -36,6 +36,17 @@ Result<Pattern> parse_pattern(const std::string& text);
 /// behind a point, an underscore or nothing: "shot.-002", but not "shot-2".
 std::size_t number_begin(std::string_view name, std::size_t end);
 
+/// Of a name that has a number: where its last one lies, with its sign; the extension is left out. `digits` is 0 where
+/// there is none; with more than kMostFrameDigits it is no frame's.
+struct FrameNumber {
+  std::size_t begin = 0, end = 0;
+  int digits = 0;
+};
+inline constexpr int kMostFrameDigits = 9;  // what always fits an int
+FrameNumber frame_number(const std::filesystem::path& file);
+/// A file's path with "*" in place of its frame's number: the same for all frames of a sequence.
+std::string without_frame_number(const std::filesystem::path& file);
+
 struct FrameFile {
   int frame = 0;
   std::filesystem::path file;
@@ -51,7 +62,7 @@ struct LeftOut {
 };
 
 /// The files of the pattern that exist, by number; with `frames` exactly those (missing ones are listed too: reading
-/// reports them). A plain file is one frame, 1 unless its name ends in a number. Errors: io (no file matches).
+/// reports them). A plain file is one frame: that of its number, else 1. Errors: io (no file matches).
 Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames,
                                            LeftOut* left_out = nullptr);
 

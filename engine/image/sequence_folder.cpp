@@ -14,8 +14,6 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostFrameDigits = 9;
-
 /// Files that differ in a number alone.
 struct Numbered {
   std::size_t digits = kMostFrameDigits + 1, files = 0;
@@ -30,13 +28,11 @@ bool is_picture(const fs::path& file) {
 
 /// Notes a file by the last number in its name, the extension left out; in `long_ones` where that has too many digits.
 void note_name(NumberedGroups& groups, const fs::path& file, LeftOut& long_ones) {
-  const std::string name = file.filename().string(), stem = file.stem().string();
+  const std::string name = file.filename().string();
   if (name.starts_with('.') || name.find('#') != std::string::npos) return;
-  std::size_t end = stem.size();
-  while (end > 0 && !is_digit(stem[end - 1])) --end;
-  const std::size_t begin = number_begin(stem, end);
-  if (begin == end) return;
-  if (end - begin - (stem[begin] == '-' ? 1 : 0) > kMostFrameDigits) {
+  const auto [begin, end, digits] = frame_number(file);
+  if (digits == 0) return;
+  if (digits > kMostFrameDigits) {
     if (is_picture(file)) long_ones.add(file);
     return;
   }
@@ -82,7 +78,8 @@ Result<std::string> sequence_in(const fs::path& folder) {
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
   std::vector<std::string> found;
   for (const auto& [name, group] : groups)
-    if (is_picture(group.example)) found.push_back(pattern_of(folder, name, std::min(group.digits, kMostFrameDigits)));
+    if (is_picture(group.example))
+      found.push_back(pattern_of(folder, name, std::min<std::size_t>(group.digits, kMostFrameDigits)));
   if (found.size() == 1) return found.front();
   constexpr std::size_t kMostNamed = 4;
   Error error{ErrorKind::io,
@@ -107,7 +104,7 @@ std::optional<SequenceFrame> sequence_around(const fs::path& file) {
   // may count among them or not, which frame 0 tells.
   for (const bool over_zero : {true, false}) {
     if (over_zero && frame >= 0) continue;
-    for (std::size_t digits = std::min(written.size(), kMostFrameDigits); digits >= 1; --digits) {
+    for (std::size_t digits = std::min<std::size_t>(written.size(), kMostFrameDigits); digits >= 1; --digits) {
       const std::string text = pattern_of(file.parent_path(), name, digits);
       if (const auto pattern = parse_pattern(text); pattern && is_around(*pattern, frame, file, over_zero))
         return SequenceFrame{text, frame};

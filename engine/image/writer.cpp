@@ -38,11 +38,15 @@ namespace {
 
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
+  if (!strip_form(picture, format, options).alpha && has_transparency(picture))
+    diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
+                                 format.extensions[0].substr(1),
+                                 format.alpha ? " in 10 bits (--type uint16 has)" : ""));
   switch (format.kind) {
     case OutputKind::exr:
       break;
     case OutputKind::png:
-      return write_png(picture, strip_form(picture, format, options), out, options.png_level, options.memory);
+      return write_png(picture, strip_form(picture, format, options), out, options.png_level.value_or(1), options.memory);
     case OutputKind::cineon:
       return write_cineon(picture, strip_form(picture, format, options), out);
     case OutputKind::ppm:
@@ -82,10 +86,6 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
 /// Writes to `temporary` and makes sure that it is all there.
 Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
                            const std::string& name, const WriteOptions& options, Diagnostics& diagnostics) {
-  if (!strip_form(picture, format, options).alpha && has_transparency(picture))
-    diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
-                                 format.extensions[0].substr(1),
-                                 format.alpha ? " in 10 bits (--type uint16 has)" : ""));
   AFTERGLOW_CHECK(write_through(picture, format, temporary, name, options, diagnostics));
   // An OutputFile has seen every byte go out; what it cannot see is a library that stopped early without saying so.
   if (format.kind == OutputKind::png || format.kind == OutputKind::pam || options.keep_layers) return {};

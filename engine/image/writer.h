@@ -56,8 +56,8 @@ struct WriteOptions {
   /// Empty: ZIP for EXR, the format's default elsewhere. EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab, some with
   /// ":level"; TIFF: none lzw zip packbits; WebP: lossless, lossy:quality; Targa: none rle.
   std::string compression;
-  int png_level = 1;  ///< 0–9; see image/deflate.h
-  int jpeg_quality = 95;
+  std::optional<int> png_level = {};     ///< 0–9, 1 where it is not said; see image/deflate.h
+  std::optional<int> jpeg_quality = {};  ///< 1–100, 95 where it is not said
   /// Blue noise between two integer codes; deterministic. Empty: into 8 bits, not into 16.
   std::optional<bool> dither = {};
   int dither_x = 0, dither_y = 0;  ///< where the picture's upper left pixel lies in the noise (≥ 0)

@@ -163,6 +163,8 @@ Result<Picture> Player::screenshot() {
   }
   out.content.clear();
   const DeviceImages images = s.first->images();
+  if (!s.first->live().stack())
+    return Error{ErrorKind::script, "the preset has no version that runs yet; nothing is written"};
   if (!images.ran) return out;
   AFTERGLOW_CHECK(s.first->read_result(s.result));
   const Size size = images.result.binding.size;

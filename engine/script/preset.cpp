@@ -184,7 +184,7 @@ bool Preset::detailed() const {
                      [&](const StackEntry& entry) { return entry.enabled && schema(entry.effect).detail; });
 }
 std::uint64_t Preset::evaluations() const { return state_->evaluations; }
-std::vector<std::string> Preset::needs() const { return state_->needs; }
+const std::vector<std::string>& Preset::needs() const { return state_->needs; }
 std::shared_ptr<const FileProbes> Preset::probes() const { return state_->runtime->path.record->looks(); }
 const SearchPath& Preset::path() const { return state_->runtime->path; }
 const std::vector<std::filesystem::path>& Preset::scripts() const { return state_->runtime->scripts; }

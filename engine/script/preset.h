@@ -76,6 +76,12 @@ struct StackEntry {
   std::vector<std::string> changed;  ///< names of those that the preset or an override set; "opacity", "blend", "mask"
   std::string file;                  ///< where the preset names the effect
   int line = 0;
+
+  bool is_mix() const { return members > 0 && !settings.empty(); }
+  /// Where its members begin, a mix's second look begins and they end, in a list in which it is entry `i`.
+  std::size_t first_of(std::size_t i) const { return i + 1; }
+  std::size_t middle_of(std::size_t i) const { return i + 1 + static_cast<std::size_t>(middle); }
+  std::size_t end_of(std::size_t i) const { return i + 1 + static_cast<std::size_t>(members); }
 };
 
 /// An argument that a preset declares by fx.args, and its value.
@@ -178,7 +184,7 @@ class Preset {
   Result<std::vector<EntrySpace>> spaces();
   /// Names of auxiliary inputs that enabled, active effects and masks ask for; where settings may change, those that
   /// they could ask for, as far as is known: layers that depend on the frame come with it (`note_needs`, `evaluate`).
-  std::vector<std::string> needs() const;
+  const std::vector<std::string>& needs() const;
   /// May `needs` of some looks grow? Then asks with the settings of this frame. True: it wants inputs that were not
   /// known.
   Result<bool> note_needs(const BuildContext& context);

@@ -113,8 +113,7 @@ ImageRef Preset::State::build_entries(lua_State* lua, std::size_t begin, std::si
     const EntryRun& run = runs[i];
     const StackEntry& entry = run.entry;
     current = &entry;
-    const std::size_t first = i + 1, middle = first + static_cast<std::size_t>(entry.middle),
-                      last = first + static_cast<std::size_t>(entry.members);
+    const std::size_t first = entry.first_of(i), middle = entry.middle_of(i), last = entry.end_of(i);
     i = last;
     if (!runtime->effects[static_cast<std::size_t>(run.effect)].is_group()) {
       image = build_entry(lua, run, graph, image, diagnostics);
@@ -122,7 +121,7 @@ ImageRef Preset::State::build_entries(lua_State* lua, std::size_t begin, std::si
     }
     if (is_left_out(lua, run, graph, diagnostics)) continue;
     ImageRef made = image;
-    if (entry.settings.empty()) {
+    if (!entry.is_mix()) {
       made = build_entries(lua, first, last, graph, image, current, diagnostics);
     } else {
       const ImageRef one = build_entries(lua, first, middle, graph, image, current, diagnostics);

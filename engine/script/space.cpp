@@ -124,19 +124,9 @@ class Tracer {
   }
 
  private:
-  struct Members {
-    std::size_t first, middle, last;
-  };
-  Members members(std::size_t i) const {
-    const StackEntry& entry = runs_[i].entry;
-    const std::size_t first = i + 1;
-    return {first, first + static_cast<std::size_t>(entry.middle), first + static_cast<std::size_t>(entry.members)};
-  }
-  bool is_mix(std::size_t i) const { return runs_[i].entry.members > 0 && !runs_[i].entry.settings.empty(); }
-
   /// Light behind the entries from `begin` to `end`. `seen`: what is around them runs.
   Light forwards(std::size_t begin, std::size_t end, Light light, bool seen) {
-    for (std::size_t i = begin; i < end; i = members(i).last) {
+    for (std::size_t i = begin; i < end; i = runs_[i].entry.end_of(i)) {
       const EntryRun& run = runs_[i];
       EntrySpace& space = out_[i];
       space.use = use_of(lua_, run);
@@ -160,13 +150,14 @@ class Tracer {
   }
 
   Light through_members(std::size_t i, const Light& light) {
-    const auto [first, middle, last] = members(i);
-    if (!is_mix(i)) return forwards(first, last, light, out_[i].runs);
-    const double amount = runs_[i].entry.settings.front().second.number[0];
+    const StackEntry& entry = runs_[i].entry;
+    const std::size_t first = entry.first_of(i), middle = entry.middle_of(i), end = entry.end_of(i);
+    if (!entry.is_mix()) return forwards(first, end, light, out_[i].runs);
+    const double amount = entry.settings.front().second.number[0];
     const bool has_first = amount < 1;
     const bool has_second = amount > 0;
     const Light one = forwards(first, middle, light, out_[i].runs && has_first);
-    const Light other = forwards(middle, last, light, out_[i].runs && has_second);
+    const Light other = forwards(middle, end, light, out_[i].runs && has_second);
     const bool takes_first = has_first && (!has_second || one.space == LightSpace::display);
     return takes_first ? one : other;
   }
@@ -174,21 +165,21 @@ class Tracer {
   /// `later`: the entry behind that makes display light. Returns that from `begin` on.
   std::string backwards(std::size_t begin, std::size_t end, std::string later) {
     std::vector<std::size_t> units;
-    for (std::size_t i = begin; i < end; i = members(i).last) units.push_back(i);
+    for (std::size_t i = begin; i < end; i = runs_[i].entry.end_of(i)) units.push_back(i);
     for (auto unit = units.rbegin(); unit != units.rend(); ++unit) {
       const std::size_t i = *unit;
-      const auto [first, middle, last] = members(i);
-      if (is_mix(i)) {
+      const StackEntry& entry = runs_[i].entry;
+      const std::size_t first = entry.first_of(i), middle = entry.middle_of(i), last = entry.end_of(i);
+      if (entry.is_mix()) {
         const std::string other = backwards(middle, last, later), one = backwards(first, middle, later);
         later = one != later ? one : other;
-      } else if (runs_[i].entry.members > 0) {
+      } else if (entry.members > 0) {
         later = backwards(first, last, later);
       } else if (EntrySpace& space = out_[i]; space.runs) {
         if (space.use.needs == LightSpace::display && space.before == LightSpace::scene && !later.empty())
-          space.warning =
-              fmt::format("'{}' is made for display-linear light, but '{}', which makes it, comes behind it",
-                          runs_[i].entry.name, later);
-        if (space.use.makes == LightSpace::display) later = runs_[i].entry.name;
+          space.warning = fmt::format(
+              "'{}' is made for display-linear light, but '{}', which makes it, comes behind it", entry.name, later);
+        if (space.use.makes == LightSpace::display) later = entry.name;
       }
     }
     return later;

@@ -22,7 +22,7 @@ double promised(const Promises& of, const char* kind, const char* number) {
 }
 
 bool is_composed(const StackEntry& entry) {
-  return entry.opacity != 1 || entry.blend != "normal" || entry.mask || entry.middle > 0;
+  return entry.opacity != 1 || entry.blend != "normal" || entry.mask || entry.is_mix();
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ HalfFloatPromise half_float_promise(const Build& build) {
     }
     const double composite = is_composed(entry) ? kComposite : 1;
     if (entry.members > 0) {
-      groups.push_back({i + 1 + static_cast<std::size_t>(entry.members), composite});
+      groups.push_back({entry.end_of(i), composite});
       continue;
     }
     const bool asked = i < build.promises.size();

@@ -220,7 +220,7 @@ Result<void> Session::collect(Picture& picture) {
   s.renderer->launch();  // the picture's pixels are read until then
   State::Frame frame = std::move(s.frames.front());
   s.frames.pop_front();
-  std::vector<std::uint8_t> codes = std::move(picture.unorm8);
+  UnsetVector<std::uint8_t> codes = std::move(picture.unorm8);
   picture = std::move(frame.picture);
   s.last = {};
   s.times.frame = {};

@@ -115,7 +115,7 @@ Result<Look> look_of_preset(const std::filesystem::path& preset, const PresetOpt
     LookEntry one{.effect = entry.effect, .settings = {}, .at = entry.at, .order = entry.order};
     one.composition = composition_of(entry);
     one.depth = entry.depth;
-    if (entry.middle > 0) {
+    if (entry.is_mix()) {
       warn(fmt::format("'{}' is tried as a group: the effects of both looks, one behind the other", entry.name));
       one.effect = kGroup;
     } else {

@@ -35,24 +35,27 @@ std::optional<int> position_of_timecode(const std::string& text, double fps) {
 
 }  // namespace
 
-std::optional<int> position_named(const std::string& text, int position, int frames, double fps,
-                                  const std::function<int(int)>& number) {
+std::optional<int> position_named(const std::string& text, const FrameRow& row) {
   const std::string word = trim(text);
-  if (word.empty() || frames < 1) return std::nullopt;
-  const auto held = [&](long long at) { return static_cast<int>(std::clamp<long long>(at, 0, frames - 1)); };
+  if (word.empty() || row.frames < 1) return std::nullopt;
+  const auto held = [&](long long at) { return static_cast<int>(std::clamp<long long>(at, 0, row.frames - 1)); };
   if (word.find(':') != std::string::npos) {
-    const auto at = position_of_timecode(word, fps);
+    const auto at = position_of_timecode(word, row.fps);
     return at ? std::optional(held(*at)) : std::nullopt;
   }
   if (word[0] == '+' || word[0] == '-') {
     const auto by = parse_number<int>(std::string_view(word).substr(word[0] == '+' ? 1 : 0));
-    return by ? std::optional(held(static_cast<long long>(position) + *by)) : std::nullopt;
+    return by ? std::optional(held(static_cast<long long>(row.position) + *by)) : std::nullopt;
   }
   const auto wanted = parse_number<int>(word);
   if (!wanted) return std::nullopt;
-  for (int i = 0; i < frames; ++i)
-    if (number(i) >= *wanted) return i;
-  return frames - 1;
+  const int clip_end = row.clip_first + row.clip_frames;
+  for (const auto& [begin, end] : {std::pair(row.clip_first, clip_end), std::pair(0, row.frames)})
+    for (int i = begin; i < end; ++i)
+      if (row.number(i) == *wanted) return i;
+  for (int i = row.clip_first; i < clip_end; ++i)
+    if (row.number(i) > *wanted) return i;
+  return clip_end - 1;
 }
 
 std::string timecode_text(int position, double fps) {

@@ -184,7 +184,7 @@ void PanelSave::take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite) {
     written_.erase(written_.begin());
     texts_.erase(texts_.begin());
   }
-  stack_.wrote(rewrite.text);
+  stack_.wrote(rewrite.before, rewrite.text);
   if (stack) {  // what is on screen is what the file says now, at once
     for (const BaseChange& change : saving_) bases.expect(change.entry, change.setting, change.after);
     port.rebase(saving_, {rewrite.before, rewrite.text, saving_stack_});
@@ -247,7 +247,7 @@ void PanelSave::undo(PanelPort& port, EditBases& bases) {
   const SavedText text = std::move(texts_.back());
   written_.pop_back();
   texts_.pop_back();
-  stack_.wrote(text.before);
+  stack_.wrote(text.after, text.before);
   if (text.stack) {
     settling_.clear();
     port.rebase({}, {text.after, text.before, nullptr});

@@ -79,12 +79,12 @@ bool PanelStack::poll(PanelPort& port, bool may_begin) {
     message_ = outcome.error->text();
     return true;
   }
-  if (!made_from_) {  // later ones keep the base of the first
-    base_ = outcome.base;
-    seen_.reset();
-  }
   StackChange change{std::make_shared<const std::string>(std::move(outcome.rewrite.text)), outcome.rewrite.renamed, "",
                      ""};
+  // Later ones keep the base of the first.
+  std::string base = made_from_ ? base_of(made_from_) : std::move(outcome.base);
+  std::erase_if(made_, [](const Made& made) { return made.text.use_count() == 1; });  // no step holds it any more
+  made_.push_back({change.text, std::make_shared<const std::string>(std::move(base))});
   const std::string& entry = outcome.rewrite.entry;
   if (edit_.kind == StackEdit::Kind::duplicate) {
     for (const auto& [before, now] : change.renamed)
@@ -101,28 +101,43 @@ bool PanelStack::poll(PanelPort& port, bool may_begin) {
 std::optional<WorkingText> PanelStack::working(PanelPort& port) const {
   const StackText& text = port.edits().stack_text();
   if (!text) return std::nullopt;
-  return WorkingText{*text, base_};
+  return WorkingText{*text, base_of(text)};
 }
 
-/// The file is read when its time is another one than before.
+const std::string& PanelStack::base_of(const StackText& text) const {
+  const auto found = std::ranges::find(made_, text, &Made::text);
+  return found == made_.end() ? base_ : *found->base;
+}
+
+void PanelStack::replace_base(const std::string& before, std::string after) {
+  const auto base = std::make_shared<const std::string>(std::move(after));
+  const std::string old = before;  // may be one of those that are replaced
+  for (Made& made : made_)
+    if (*made.base == old) made.base = base;
+  if (base_ == old) base_ = *base;
+}
+
+/// The file is read when its time is another one than before, or the stack is.
 void PanelStack::look_at_file(PanelPort& port) {
-  if (!port.edits().stack_text()) {
+  const StackText& text = port.edits().stack_text();
+  if (!text) {
     conflict_ = false;
     seen_.reset();
     return;
   }
   std::error_code none;
   const auto time = std::filesystem::last_write_time(file_, none);
-  if (none || (seen_ && *seen_ == time)) return;
-  auto text = read_file(file_);
-  if (!text) return;
+  if (none || (seen_ && *seen_ == time && looked_at_ == text)) return;
+  auto now = read_file(file_);
+  if (!now) return;
   seen_ = time;
-  conflict_ = *text != base_;
-  now_ = std::move(*text);
+  looked_at_ = text;
+  conflict_ = *now != base_of(text);
+  now_ = std::move(*now);
 }
 
 void PanelStack::keep() {
-  base_ = now_;
+  replace_base(base_of(looked_at_), now_);
   conflict_ = false;
 }
 
@@ -132,8 +147,9 @@ void PanelStack::take(PanelPort& port) {
   port.reset_stack();
 }
 
-void PanelStack::wrote(std::string text) {
-  base_ = std::move(text);
+void PanelStack::wrote(const std::string& before, std::string after) {
+  base_ = after;
+  replace_base(before, std::move(after));
   seen_.reset();
   conflict_ = false;
 }

@@ -45,8 +45,8 @@ class PanelStack {
   bool conflict() const { return conflict_; }
   void keep();                 ///< the panel's stack, over what the file says now
   void take(PanelPort& port);  ///< the file's stack; a step of the history
-  /// The program itself has written the file.
-  void wrote(std::string text);
+  /// The program itself has written the file: stacks that were made beside the text before are beside this one now.
+  void wrote(const std::string& before, std::string after);
 
  private:
   struct Outcome {
@@ -56,12 +56,20 @@ class PanelStack {
   };
   Outcome run(const StackEdit& edit, const StackText& text) const;
   void look_at_file(PanelPort& port);
+  const std::string& base_of(const StackText& text) const;
+  void replace_base(const std::string& before, std::string after);
   static std::string told(const StackEdit& edit, const std::string& entry);
 
   std::filesystem::path file_;
   PresetOptions options_;
-  std::string base_;  ///< the file's text beside which the changed stacks of the history were made
+  /// A changed stack of the history or of a snapshot, and the file's text beside which it was made.
+  struct Made {
+    StackText text, base;
+  };
+  std::vector<Made> made_;
+  std::string base_;  ///< of stacks that are not among them: the file's texts before a save
   std::optional<std::filesystem::file_time_type> seen_;  ///< of the file, when it was compared last
+  StackText looked_at_;                                  ///< what it was compared for
   std::string now_;                                      ///< the file's text where that is another
   bool conflict_ = false;
   std::string message_, shown_;

@@ -134,10 +134,13 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   for (const auto& [at, numbers] : range) {
     const Footage::Clip& clip = player.footage().clips()[at];
     const bool movie = player.footage().movie(player.footage().frame(clip.first).picture) != nullptr;
+    const auto pattern = parse_pattern(clip.key);  // may have more frames than are played
+    const bool several = movie || (pattern && pattern->numbered);
     out.files.inputs.push_back(footage.inputs[at]);
-    out.files.frames_of.push_back(clip.frames > 1 || movie ? frames_text(numbers) : "");
+    out.files.frames_of.push_back(several ? frames_text(numbers) : "");
   }
   out.files.output = output;
+  out.files.holds = true;  // as the player does
   out.files.depth = footage.read.depth;
   out.files.normal = footage.read.normal;
   out.files.motion = footage.read.motion;

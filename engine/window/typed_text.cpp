@@ -11,7 +11,7 @@ std::optional<std::string> TypedText::draw(const char* name, const std::string& 
   const ImGuiID item = ImGui::GetID(name);
   const auto field = std::ranges::find(fields_, item, &Field::item);
   const bool open = field != fields_.end();
-  Field shown{item, {}};
+  Field shown{item, {}, value};
   value.copy(shown.text.data(), kMost);
   auto& text = open ? field->text : shown.text;
   // Tab takes the text as Enter does, and goes to no other field: keys are shortcuts again.
@@ -28,8 +28,9 @@ std::optional<std::string> TypedText::draw(const char* name, const std::string& 
   if (!open && active) fields_.push_back(shown);
   if (!open || active) return std::nullopt;
   std::string out = text.data();
+  const bool same = out == value || out == field->opened_with;
   fields_.erase(field);
-  return out == value ? std::nullopt : std::optional(std::move(out));
+  return same ? std::nullopt : std::optional(std::move(out));
 }
 
 }  // namespace afterglow

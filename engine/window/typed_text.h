@@ -22,6 +22,7 @@ class TypedText {
   struct Field {
     ImGuiID item;
     std::array<char, kMost + 1> text;
+    std::string opened_with = {};  ///< the value may be another one since
   };
   std::list<Field> fields_;  ///< two while the keyboard goes from one to the next
 };

@@ -55,6 +55,7 @@ bool TypedValue::opened(ImGuiID item, const SettingSchema& schema, const Setting
   const std::string text = typed_text(schema, take_back_ ? before_ : value);
   text_.fill(0);
   text.copy(text_.data(), text_.size() - 1);
+  opened_with_ = text_.data();
   item_ = item;
   begin_ = true;
   active_ = false;
@@ -85,6 +86,7 @@ std::optional<SettingValue> TypedValue::draw(Ui& ui, const char* name, const Set
   if (!entered && !left && idle_ < kPatience) return std::nullopt;
   item_ = 0;
   if (!entered && !left) return std::nullopt;
+  if (opened_with_ == text_.data()) return std::nullopt;
   const auto typed = parse_typed(schema, text_.data());
   if (!typed) {
     ui.say(std::string("'") + text_.data() + "' is no value of this setting");

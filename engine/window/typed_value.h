@@ -39,6 +39,7 @@ class TypedValue {
   bool begin_ = false, take_back_ = false, active_ = false;
   int idle_ = 0;  ///< frames without the keyboard
   std::array<char, 128> text_{};
+  std::string opened_with_;  ///< what stood in the field then: the value may be another one since
 };
 
 /// As many numbers as the type has, separated by blanks or commas. None: it is not that.

@@ -209,8 +209,13 @@ void WindowApp::draw_frame_field() {
   if (!text || text->empty()) return;
   Transport& t = player_.transport();
   const Footage& footage = player_.footage();
-  const auto to =
-      position_named(*text, t.position(), t.frames(), t.fps(), [&](int at) { return footage.frame(at).number; });
+  const Footage::Clip& clip = footage.clips()[static_cast<std::size_t>(footage.clip_at(t.position()))];
+  const auto to = position_named(*text, {.position = t.position(),
+                                         .frames = t.frames(),
+                                         .clip_first = clip.first,
+                                         .clip_frames = clip.frames,
+                                         .fps = t.fps(),
+                                         .number = [&](int at) { return footage.frame(at).number; }});
   if (to) {
     t.go_to(*to, player_.now());
   } else {

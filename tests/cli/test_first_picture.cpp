@@ -57,6 +57,14 @@ TEST_F(FirstPicture, SaysTheRateOfAVideo) {
   EXPECT_TRUE(frames_of("d.mkv") == frames_of("e.mkv"));
 }
 
+/// One that cannot be read says nothing; the next one does.
+TEST_F(FirstPicture, IsTheFirstThatCanBeRead) {
+  ASSERT_NO_FATAL_FAILURE(make_pictures(25, 1));
+  fs::resize_file(path("in/1001.exr"), 60);
+  EXPECT_EQ(run({"run", "look.lua", "in/####.exr", "-o", "a.mp4"}).exit_code, kFiles);
+  EXPECT_EQ(stream_of("a.mp4").at("r_frame_rate"), "25/1");
+}
+
 TEST_F(FirstPicture, SaysTheShapeOfAPixel) {
   ASSERT_NO_FATAL_FAILURE(make_pictures(0, 2));
   for (const char* name : {"a.mp4", "a.mov", "a.mkv"}) {

@@ -104,6 +104,48 @@ TEST_F(PreRoll, OrderAndStepDoNotMatter) {
   EXPECT_EQ(nlohmann::json::parse(read("report.json")).at("pre_roll"), 3) << "2, 4 and 6";
 }
 
+/// As a shell lists them: numbers below zero, and numbers that are not the end of the name.
+TEST_F(PreRoll, AListOfFilesIsTheSequenceThatItsPatternIs) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> sequences{
+      {"in/n.####.exr", {"in/n.-002.exr", "in/n.-001.exr", "in/n.0000.exr", "in/n.0001.exr"}},
+      {"in/b.####_beauty.exr", {"in/b.0001_beauty.exr", "in/b.0002_beauty.exr", "in/b.0003_beauty.exr"}}};
+  for (const auto& [pattern, files] : sequences) {
+    for (const auto& file : files) fs::copy(path("in/shot.0001.exr"), path(file));
+    ASSERT_EQ(run({"run", "look.lua", pattern, "-o", "all/", "--compression", "none"}).exit_code, kDone);
+    std::vector<std::string> arguments{"run", "look.lua"};
+    arguments.insert(arguments.end(), files.begin(), files.end());
+    arguments.insert(arguments.end(), {"-o", "out/", "--compression", "none"});
+    ASSERT_EQ(run(arguments).exit_code, kDone);
+    for (const auto& file : files) {
+      const std::string name = fs::path(file).filename().string();
+      EXPECT_TRUE(read("out/" + name) == read("all/" + name)) << name;
+    }
+  }
+}
+
+/// Frames come in the order that was asked for, as they do where nothing looks back.
+TEST_F(PreRoll, OneOutputKeepsTheOrder) {
+  const auto frames = [&](const std::vector<std::string>& inputs, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", "look.lua"};
+    arguments.insert(arguments.end(), inputs.begin(), inputs.end());
+    arguments.insert(arguments.end(), {"-o", "-", "--format", "ppm", "--dither", "none"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.out;
+  };
+  const auto one = [&](const std::string& number) { return frames({"in/shot.####.exr"}, {"--frames", number}); };
+  EXPECT_NE(one("5"), one("3")) << "the test shows something";
+  EXPECT_TRUE(frames({"in/shot.####.exr"}, {"--frames", "5,3,4,8,1"}) ==
+              one("5") + one("3") + one("4") + one("8") + one("1"));
+  // Of two sequences by turns each frame has those before it that the list has.
+  fs::copy(path("in/shot.0001.exr"), path("in/b.0001.exr"));
+  fs::copy(path("in/shot.0001.exr"), path("in/b.0002.exr"));
+  const std::string first = frames({"in/b.0001.exr"}, {}), both = frames({"in/b.####.exr"}, {});
+  EXPECT_TRUE(frames({"in/b.0001.exr", "in/shot.0001.exr", "in/b.0002.exr"}, {}) ==
+              first + one("1") + both.substr(first.size()));
+}
+
 TEST_F(PreRoll, AHoleIsPassedOver) {
   fs::remove(path("in/shot.0004.exr"));
   ASSERT_EQ(run_into("all").exit_code, kDone);

@@ -99,6 +99,18 @@ TEST_F(StreamOut, AFrameThatFailsIsHeldByTheOneBefore) {
   EXPECT_EQ(outcome.out, codes_of(2) + codes_of(2) + codes_of(2) + codes_of(4));
 }
 
+/// A stream of pictures says it once, as the file of one does.
+TEST_F(StreamOut, TransparencyThatIsPutOnBlackIsTold) {
+  const std::string half_clear("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x28\x40\x40\x40\x80", 22);
+  for (const char* name : {"in/1.tga", "in/2.tga"}) write(name, half_clear);
+  const Outcome outcome = run({"run", "look.lua", "in/#.tga", "-o", "-", "--format", "ppm"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const std::string said = "standard output: ppm files have no alpha; the picture is put on black";
+  const std::size_t at = outcome.err.find(said);
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(said, at + 1), std::string::npos) << outcome.err;
+}
+
 TEST_F(StreamOut, WhatCannotGoIntoAPipe) {
   make_frames(2);
   for (const auto& [more, message] : std::vector<std::pair<std::vector<std::string>, const char*>>{

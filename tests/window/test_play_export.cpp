@@ -2,6 +2,7 @@
 // Ranges that a user exports from the window: what is written, with which look, and what is left of one that is
 // cancelled.
 #include "image/input_space.h"
+#include "image/movie.h"
 #include "play_window_test.h"
 
 namespace afterglow {
@@ -104,6 +105,36 @@ TEST_F(PlayExport, OfSeveralClipsTheOneThatTheRangeIsIn) {
   EXPECT_EQ(files("out."), 2);
   EXPECT_NEAR(pixel("out.0002.exr")[0], 0.25, 1e-3) << "of the second clip";
   EXPECT_NEAR(pixel("out.0003.exr")[0], 0.25, 1e-3);
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayExport, OfASequenceTheFramesThatArePlayed) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.####.exr", "--frames", "2", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0002.exr"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  EXPECT_TRUE(program_->wait_for("export: 1 frames written to out.####.exr"));
+  EXPECT_EQ(files("out."), 1) << "the others are there, but nobody asked for them";
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+/// In a video the frame before stands for one that is not there, as it does on screen.
+TEST_F(PlayExport, MissingFramesAreHeldInAVideo) {
+  write_preset("{ 1, 0, 0 }");
+  for (const char* name : {"hole.0001.exr", "hole.0004.exr"}) ASSERT_NO_FATAL_FAILURE(write_picture_file(name, 0.25f));
+  play({"look.lua", "hole.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown hole.0001.exr"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.mkv"));
+  EXPECT_TRUE(program_->wait_for("export: 2 frames written to out.mkv"));
+  Diagnostics nowhere;
+  const auto movie = Movie::open(folder_ / "out.mkv", {}, nowhere);
+  ASSERT_TRUE(movie) << movie.error().text();
+  const auto& facts = (*movie)->facts();
+  ASSERT_EQ(facts.pts.size(), 2u);
+  const double unit = static_cast<double>(facts.time_base.numerator) / facts.time_base.denominator;
+  EXPECT_NEAR(static_cast<double>(facts.pts[1] - facts.pts[0]) * unit, 3 / 24.0, 2e-3);
   ASSERT_TRUE(user("key q"));
   expect_clean_end();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures in host memory, in every form: the same pixels as a Session makes.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -176,7 +177,7 @@ TEST_F(PictureTest, CodesAreThoseOfAFile) {
   const StackPtr stack = this->stack();
   run(stack, {codes.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0},
       {result.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0});
-  EXPECT_EQ(result, wanted.unorm8);
+  EXPECT_TRUE(std::ranges::equal(result, wanted.unorm8));
 
   // To floats, and in three channels.
   const Picture linear = expected(read.pixels);

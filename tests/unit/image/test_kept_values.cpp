@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "image/kept_values.h"
 #include "image/time_code.h"
@@ -156,6 +158,29 @@ TEST_F(KeptBetween, ResolutionTurnsWithThePixels) {
     EXPECT_NEAR(written->spec().get_float_attribute("XResolution"), 150, 0.02) << name;
     EXPECT_NEAR(written->spec().get_float_attribute("YResolution"), 300, 0.02) << name;
   }
+}
+
+/// 300 dots across an inch and 600 down it: each is twice as wide as high. Without a unit JPEG's numbers are the width
+/// and the height themselves.
+TEST_F(KeptBetween, DotsOfAnInchAreTheShapeOfJpegsPixels) {
+  OIIO::ImageSpec spec = make_spec(8, 4, {"R", "G", "B"}, OIIO::TypeUInt8);
+  spec.attribute("XResolution", 300.0f);
+  spec.attribute("YResolution", 600.0f);
+  spec.attribute("PixelAspectRatio", 2.0f);  // of which the library makes YResolution
+  spec.attribute("ResolutionUnit", "in");
+  make_file(folder_ / "wide.tif", {spec}, {marks(8, 4, 3)});
+  Diagnostics silent;
+  ASSERT_TRUE(write_picture(read_or_fail(folder_ / "wide.tif"), folder_ / "wide.jpg", {}, silent));
+  std::ifstream in(folder_ / "wide.jpg", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(bytes.substr(6, 5), std::string("JFIF\0", 5));
+  EXPECT_EQ(bytes.substr(13, 5), std::string("\1\x01\x2c\x02\x58", 5)) << "inches, 300, 600";
+  const Picture wide = read_or_fail(folder_ / "wide.jpg");
+  const MetadataValue* shape = find_metadata(wide.facts->metadata, "PixelAspectRatio");
+  ASSERT_TRUE(shape);
+  EXPECT_EQ(metadata_number(*shape, 0), 2);
+  ASSERT_TRUE(write_picture(wide, folder_ / "wide.exr", {}, silent));
+  EXPECT_EQ(OIIO::ImageInput::open((folder_ / "wide.exr").string())->spec().get_float_attribute("PixelAspectRatio"), 2);
 }
 
 TEST_F(KeptBetween, PixelsThatAreNotSquareAreTold) {

@@ -111,6 +111,72 @@ TEST(Radiance, ExposureIsTakenBackAndXyzRefused) {
   EXPECT_THAT(xyz.error().text(), HasSubstr("holds CIE XYZ"));
 }
 
+/// 0 is white, whatever the samples are; alpha is what it is.
+TEST(Tiff, WhiteIsZeroWhereItSaysSo) {
+  const TemporaryFolder folder;
+  const auto number = [](std::uint32_t value, int bytes) {
+    std::string out;
+    for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 255);
+    return out;
+  };
+  // Two pixels, black and white, of one channel and alpha.
+  for (const int bits : {8, 16, 32}) {
+    const auto bytes = static_cast<std::uint32_t>(bits / 8);
+    const std::string dark(bytes, '\xff'), light(bytes, '\0'), opaque(bytes, '\xff');
+    for (const bool alpha : {false, true}) {
+      const std::string pixels = alpha ? dark + opaque + light + opaque : dark + light;
+      struct Tag {
+        std::uint32_t name, type, value;
+      };
+      std::vector<Tag> tags{{256, 4, 2},
+                            {257, 4, 1},
+                            {258, 3, static_cast<std::uint32_t>(bits)},
+                            {259, 3, 1},
+                            {262, 3, 0},
+                            {273, 4, 8},
+                            {277, 3, alpha ? 2u : 1u},
+                            {278, 4, 1},
+                            {279, 4, static_cast<std::uint32_t>(pixels.size())}};
+      if (alpha) tags.push_back({338, 3, 2});
+      std::string list = number(static_cast<std::uint32_t>(tags.size()), 2);
+      for (const Tag& tag : tags) {
+        const bool pair = alpha && tag.name == 258;  // of both channels
+        list += number(tag.name, 2) + number(tag.type, 2) + number(pair ? 2 : 1, 4) +
+                (pair ? number(tag.value, 2) + number(tag.value, 2) : number(tag.value, 4));
+      }
+      write_bytes(folder / "white.tif",
+                  "II*" + std::string(1, '\0') + number(8 + static_cast<std::uint32_t>(pixels.size()), 4),
+                  pixels + list + number(0, 4));
+      const Picture picture = read_or_fail(folder / "white.tif");
+      EXPECT_EQ(picture.color.pixels, (std::vector<float>{0, 0, 0, 1, 1, 1, 1, 1}))
+          << bits << (alpha ? " with alpha" : "");
+    }
+  }
+}
+
+/// Two rows of three, in the eight orders that the format knows.
+TEST(Radiance, EveryOrderOfPixelsStandsUpright) {
+  const TemporaryFolder folder;
+  constexpr int kWidth = 3, kHeight = 2;
+  for (const char* order :
+       {"-Y 2 +X 3", "-Y 2 -X 3", "+Y 2 +X 3", "+Y 2 -X 3", "+X 3 -Y 2", "+X 3 +Y 2", "-X 3 -Y 2", "-X 3 +Y 2"}) {
+    const std::string text = order;
+    const bool columns = text[1] == 'X';
+    const bool right = text[columns ? 0 : 5] == '+', down = text[columns ? 5 : 0] == '-';
+    std::string pixels;
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      const int x = columns ? i / kHeight : i % kWidth, y = columns ? i % kHeight : i / kWidth;
+      const int value = (right ? x : kWidth - 1 - x) + kWidth * (down ? y : kHeight - 1 - y);
+      pixels += std::string(3, static_cast<char>(128 + value)) + '\x88';  // as they are, 8 bits of 256
+    }
+    write_bytes(folder / "turned.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + text + "\n", pixels);
+    const Picture upright = read_or_fail(folder / "turned.hdr");
+    ASSERT_EQ(upright.color.size(), (Size{kWidth, kHeight})) << order;
+    for (std::size_t i = 0; i < kWidth * kHeight; ++i)
+      EXPECT_NEAR(upright.color.pixels[4 * i], 128 + static_cast<double>(i), 0.6) << order << ", pixel " << i;
+  }
+}
+
 TEST(Pnm, DeepSamplesAreWhatTheyAre) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& header, const std::string& data) {
@@ -140,6 +206,15 @@ TEST(Pnm, DeepSamplesAreWhatTheyAre) {
   ASSERT_EQ(grey.size(), 24u);
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(grey[4 * i + c], static_cast<float>(codes[i] / 65535));
+  const std::string three("\x64\x32\x21", 3);
+  for (const char* most : {"100", "254"}) {
+    const double all = std::stod(most);
+    expect(read(std::string("P6 1 1 ") + most + "\n", three), {100 / all, 50 / all, 33 / all}, most);
+    expect(read(std::string("P3 1 1 ") + most + "\n", "100 50 33"), {100 / all, 50 / all, 33 / all}, most);
+  }
+  write_bytes(folder / "p.ppm", "P6 1 1 100\n", three);
+  const Picture light = read_or_fail(folder / "p.ppm");
+  EXPECT_NEAR(light.color.pixels[1], 0.2140411, 1e-6) << "half of sRGB";
   EXPECT_TRUE(read("P6 2 1 65535\n", six.substr(1)).empty()) << "too short";
   EXPECT_TRUE(read("P3 2 1 65535\n", "1 2 3 4 5 x").empty());
   for (const char* most : {"0", "65536"}) EXPECT_TRUE(read(std::string("P6 2 1 ") + most + "\n", six).empty());

@@ -91,6 +91,21 @@ TEST_F(ReaderFaults, TargaColoursBeyondTheTable) {
               HasSubstr("a colour that its table"));
 }
 
+/// What OpenImageIO 2.4 takes for other colours than they are.
+TEST_F(ReaderFaults, OrdersThatItsReaderDoesNotKnow) {
+  std::string shifted = numbered_targa(false, zeros(64)) + kTargaEnd;
+  shifted[3] = '\x01';
+  EXPECT_THAT(said(shifted), HasSubstr("has a table of colours that does not begin at 0"));
+  const auto bmp = [](unsigned red, unsigned blue) {
+    return "BM" + number(74, 4) + zeros(4) + number(66, 4) + number(40, 4) + number(1, 4) + number(1, 4) +
+           number(1, 2) + number(32, 2) + number(3, 4) + zeros(20) + number(red, 4) + number(0xff00, 4) +
+           number(blue, 4) + "\x10\x20\x30\x40" + zeros(4);
+  };
+  EXPECT_EQ(said(bmp(0xff0000, 0xff)), "ok");
+  EXPECT_THAT(said(bmp(0xff, 0xff0000)), HasSubstr("holds its channels in an order that is not read"));
+  EXPECT_THAT(said(bmp(0xff0000, 0xff).substr(0, 60)), HasSubstr("is truncated"));
+}
+
 TEST_F(ReaderFaults, TargaTextsWithoutAnEnd) {
   const std::string picture = numbered_targa(false, zeros(64));
   const auto with = [&](std::size_t place) {

@@ -109,7 +109,10 @@ TEST(HoverHelp, ComesWhenThePointerRestsAndNeverWhileItDrags) {
 
 TEST(FrameField, NumbersStepsAndTimecodes) {
   const auto number = [](int at) { return 1001 + at + (at >= 5 ? 10 : 0); };  // a hole of ten
-  const auto at = [&](const char* text) { return position_named(text, 4, 100, 23.976, number).value_or(-1); };
+  const auto at = [&](const char* text) {
+    return position_named(text, {.position = 4, .frames = 100, .clip_frames = 100, .fps = 23.976, .number = number})
+        .value_or(-1);
+  };
   EXPECT_EQ(at("1003"), 2);
   EXPECT_EQ(at(" 1005 "), 4);
   EXPECT_EQ(at("1008"), 5) << "the next one that is there";
@@ -120,6 +123,17 @@ TEST(FrameField, NumbersStepsAndTimecodes) {
   EXPECT_EQ(at("00:00:01:06"), 30);
   EXPECT_EQ(at("2:3"), 51);
   for (const char* wrong : {"", "x", "12x", "1:x", "1:2:3:4:5", "+", "1:-2"}) EXPECT_EQ(at(wrong), -1) << wrong;
+  // Clips count anew: 1001 to 1010, 1 to 10, 1001 to 1010.
+  const auto counted = [](int i) { return (i / 10 == 1 ? 1 : 1001) + i % 10; };
+  const auto in_clip = [&](int clip, const char* text) {
+    return position_named(
+        text, {.position = 10 * clip, .frames = 30, .clip_first = 10 * clip, .clip_frames = 10, .number = counted});
+  };
+  EXPECT_EQ(in_clip(1, "7"), 16);
+  EXPECT_EQ(in_clip(0, "7"), 16) << "where another clip has it";
+  EXPECT_EQ(in_clip(2, "1003"), 22) << "not that of the first clip";
+  EXPECT_EQ(in_clip(1, "1003"), 2);
+  EXPECT_EQ(in_clip(1, "500"), 19) << "its last one";
   EXPECT_EQ(timecode_text(51, 23.976), "00:00:02:03");
   EXPECT_EQ(timecode_text(24 * 3661 + 5, 24), "01:01:01:05");
 }

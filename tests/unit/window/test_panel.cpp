@@ -97,6 +97,23 @@ TEST_F(PanelTest, ADoubleClickTypes) {
   EXPECT_EQ(edited("bloom", "scatter").number[0], 0.5);
 }
 
+/// The file may say another value while the field is open. Nothing was typed: Escape is no edit of the old one.
+TEST_F(PanelTest, AFieldThatIsLeftIsNoEditOfWhatTheFileSaidBefore) {
+  ASSERT_TRUE(find({"Settings", "bloom", "intensity", "##value"}));
+  hold_control(true);
+  press(true);
+  press(false);
+  hold_control(false);
+  frame();
+  std::string text = kPreset;
+  text.replace(text.find("0.2"), 3, "0.9");
+  std::ofstream(file) << text;
+  port->reload();
+  frame();
+  press_key(ImGuiKey_Escape);
+  EXPECT_FALSE(port->changes.value("bloom", "intensity"));
+}
+
 TEST_F(PanelTest, WhileTheFileHasAnErrorSettingsRest) {
   port->now.error = Error{ErrorKind::script, "broken"};
   EXPECT_THAT(words(), HasSubstr("Settings rest until it is mended"));

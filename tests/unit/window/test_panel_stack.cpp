@@ -99,6 +99,50 @@ TEST_F(PanelTest, StackAndFileDisagree) {
   EXPECT_THAT(*read_file(file), Not(HasSubstr("fx.bloom")));
 }
 
+/// Undo brings back a stack that was made before another program changed the file: it is in conflict again.
+TEST_F(PanelTest, AStackOfTheHistoryGoesByTheFileThatItWasMadeFrom) {
+  const auto remove_next = [&] {
+    panel->choose_next(interface.ui(), *port, 1);
+    panel->act(interface.ui(), *port, Panel::EntryAction::remove);
+    frame();
+    panel->stack().wait();
+    frame();
+    ASSERT_FALSE(panel->stack().failed()) << panel->stack().message();
+    port->reload();
+    frame();
+  };
+  ASSERT_NO_FATAL_FAILURE(remove_next());  // of the file as it was
+  std::string text = kPreset;
+  text.replace(text.find("5 + 5"), 5, "33");
+  std::ofstream(file) << text;
+  fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(2));
+  frame();
+  EXPECT_TRUE(panel->stack().conflict());
+  ASSERT_TRUE(find({"Settings", "Take the file's"}));
+  click();
+  port->reload();
+  frame();
+  EXPECT_FALSE(panel->stack().conflict());
+  ASSERT_NO_FATAL_FAILURE(remove_next());  // of the file as it is
+  EXPECT_FALSE(panel->stack().conflict());
+  EXPECT_TRUE(port->undo());
+  EXPECT_TRUE(port->undo());
+  frame();
+  EXPECT_TRUE(panel->stack().conflict());
+  panel->save(*port);
+  frame();
+  EXPECT_EQ(*read_file(file), text) << "nothing is written over it";
+  EXPECT_TRUE(port->redo());
+  EXPECT_TRUE(port->redo());
+  frame();
+  EXPECT_FALSE(panel->stack().conflict()) << "that one was made from it";
+  panel->save(*port);
+  panel->saving().wait();
+  frame();
+  EXPECT_THAT(*read_file(file), HasSubstr("33"));
+  EXPECT_NE(*read_file(file), text);
+}
+
 TEST_F(PanelTest, WhatTheScriptMakesIsToldWithItsPlace) {
   std::ofstream(file) << "local fx = require \"afterglow\"\nlocal list = {}\nfor i = 1, 2 do list[i] = fx.vignette {} "
                          "end\nreturn fx.stack(list)\n";
