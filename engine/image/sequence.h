@@ -75,6 +75,8 @@ struct SequenceFrame {
 };
 /// None: the name has no number, or no picture with the number before or behind it lies beside it.
 std::optional<SequenceFrame> sequence_around(const std::filesystem::path& file);
+/// Pictures with the sequences around them in place of those that have one, each once.
+std::vector<std::string> in_sequences(const std::vector<std::string>& pictures);
 /// Inputs with the sequences of the folders among them.
 Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs);
 

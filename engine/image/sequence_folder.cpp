@@ -113,6 +113,16 @@ std::optional<SequenceFrame> sequence_around(const fs::path& file) {
   return std::nullopt;
 }
 
+std::vector<std::string> in_sequences(const std::vector<std::string>& pictures) {
+  std::vector<std::string> out;
+  for (const std::string& picture : pictures) {
+    const auto around = sequence_around(picture);
+    const std::string& input = around ? around->pattern : picture;
+    if (std::ranges::find(out, input) == out.end()) out.push_back(input);
+  }
+  return out;
+}
+
 Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs) {
   for (auto& input : inputs) {
     std::error_code ec;

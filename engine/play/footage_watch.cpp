@@ -19,9 +19,16 @@ constexpr double kShare = 10;    // looks take at most a tenth of the thread's t
 /// A picture and what is read with it, as it was when it was taken.
 using Stamps = std::map<std::filesystem::path, Hash>;
 
+/// Those that frames show; numbers of pictures that were rendered anew stay free.
+std::set<int> shown_pictures(const Footage& footage) {
+  std::set<int> out;
+  for (int position = 0; position < footage.frames(); ++position) out.insert(footage.frame(position).picture);
+  return out;
+}
+
 std::set<std::filesystem::path> folders_of(const Footage& footage) {
   std::set<std::filesystem::path> out;
-  for (int picture = 0; picture < footage.pictures(); ++picture)
+  for (const int picture : shown_pictures(footage))
     for (const auto& file : footage.files(picture)) out.insert(file.parent_path());
   return out;
 }
@@ -30,7 +37,7 @@ std::optional<Hash> stamp_now(const std::filesystem::path& file) { return inspec
 
 /// Of pictures that have none. One that is not known is any other than the next.
 void take_stamps(const Footage& footage, const auto& stamp, Stamps& taken) {
-  for (int picture = 0; picture < footage.pictures(); ++picture)
+  for (const int picture : shown_pictures(footage))
     if (const auto [at, is_new] = taken.try_emplace(footage.file(picture)); is_new)
       at->second = stamp_of(footage.files(picture), stamp).value_or(Hash{});
 }
@@ -38,7 +45,7 @@ void take_stamps(const Footage& footage, const auto& stamp, Stamps& taken) {
 /// Files that have changed since they were taken and are whole again.
 std::set<std::filesystem::path> changes(const Footage& footage, WholeFiles& whole, Stamps& taken) {
   std::set<std::filesystem::path> out;
-  for (int picture = 0; picture < footage.pictures(); ++picture) {
+  for (const int picture : shown_pictures(footage)) {
     const auto stamp = stamp_of(footage.files(picture), [&](const auto& file) { return whole.whole(file); });
     if (!stamp) continue;
     const auto [known, first] = taken.emplace(footage.file(picture), *stamp);

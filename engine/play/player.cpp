@@ -228,15 +228,16 @@ Result<bool> Player::State::show_due(double now) {
   if (!due.moved && !dirty && !reread && !compare_missing && shown.position == due.position) return false;
   const FootageFrame& frame = footage->frame(due.position);
   const auto read = ahead->find(frame.picture);
+  const std::int64_t ran_tick = ran ? ran->tick : due.tick;  // what is on screen runs again in its own place
   if (!read) {
     if (transport.playing() && due.moved) ++figures.late;
     // An edit need not wait for the next picture: the one on screen shows it.
-    if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, due.tick, false});
+    if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, ran_tick, false});
     return false;
   }
   // What could not be read is told once, until it is read anew; edits show on the picture that stays.
   if (read->error && !due.moved && !reread && shown.position == due.position && shown.unreadable) {
-    if (picture && (dirty || compare_missing)) return run(picture, {shown.position, due.tick, false});
+    if (picture && (dirty || compare_missing)) return run(picture, {shown.position, ran_tick, false});
     return false;
   }
   const ShownFrame before = shown;
@@ -353,7 +354,7 @@ Result<std::unique_ptr<Player>> Player::open(Device& device, const PlayerOptions
   if (!options.other_preset.empty()) {
     AFTERGLOW_TRY(s.second, LiveSession::open(device, options.other_preset, s.live_options(overrides), diagnostics));
   }
-  s.transport.set_fps(options.fps.value_or(s.footage->fps().value_or(24)), s.now());
+  s.transport.set_fps(s.usual_fps(), s.now());
   s.transport.set_loop(options.loop, s.now());
   s.transport.set_pacing(options.pacing, s.now());
   if (options.sound)

@@ -10,13 +10,20 @@
 
 namespace afterglow {
 
+/// There is another preset, or other footage.
+void Player::State::forget_finite() {
+  asked_finite.reset();
+  told_finite.clear();
+  shown.not_finite.reset();
+}
+
 /// The first frame of each build is looked at, and each that stands still.
 void Player::State::watch_finite() {
   if (!finite_watch || !picture || shown.position < 0 || shown.failed || shown.unreadable) return;
-  const std::pair now_shown{measured, shown.position};
-  if (measured == 0 || asked_finite == now_shown) return;
-  if (transport.playing() && asked_finite && asked_finite->first == measured) return;
-  asked_finite = now_shown;
+  if (measured == 0) return;
+  const bool same_build = asked_finite && asked_finite->build == measured;
+  if (same_build && (transport.playing() || asked_finite->picture.lock() == picture)) return;
+  asked_finite = {measured, picture};
   FiniteQuestion question{.preset = options.preset,
                           .text = {},
                           .overrides = first->live().overrides(),

@@ -29,25 +29,39 @@ Result<void> Player::State::open_row(FootageOptions wanted) {
   return {};
 }
 
+namespace {
+
+/// Where the frame at a position of the older footage is in the newer one. None: it is gone.
+std::optional<int> moved(const Footage& older, int position, const Footage& newer) {
+  const auto clip_of = [](const Footage& footage, int at) -> const std::string& {
+    return footage.clips()[static_cast<std::size_t>(footage.clip_at(at))].key;
+  };
+  const auto is_it = [&](int at) {
+    return newer.frame(at).number == older.frame(position).number && clip_of(newer, at) == clip_of(older, position);
+  };
+  if (position < newer.frames() && is_it(position)) return position;
+  for (int at = 0; at < newer.frames(); ++at)
+    if (is_it(at)) return at;
+  return std::nullopt;
+}
+
+}  // namespace
+
 /// Pictures keep their numbers: what is in memory stays there.
 void Player::State::take_footage() {
   const auto newer = rendering ? rendering->take() : nullptr;
   if (!newer) return;
-  const int number = footage->frame(transport.position()).number;
-  const std::string clip = footage->clips()[static_cast<std::size_t>(footage->clip_at(transport.position()))].key;
+  const auto older = footage;
   footage = newer;
   {
     const std::lock_guard lock(mutex);
     read_footage = newer;
   }
+  const int asked = transport.position();
   transport.resize(footage->frames(), now());
-  // The frame that is shown stays, though others may have come before it.
-  const auto is_it = [&](int position) {
-    return footage->frame(position).number == number &&
-           footage->clips()[static_cast<std::size_t>(footage->clip_at(position))].key == clip;
-  };
-  for (int position = 0; position < footage->frames() && !is_it(transport.position()); ++position)
-    if (is_it(position)) transport.go_to(position, now());
+  // The frames that are asked for and shown stay, though others may have come before them.
+  if (const auto at = moved(*older, asked, *footage)) transport.go_to(*at, now());
+  if (shown.position >= 0) shown.position = moved(*older, shown.position, *footage).value_or(-1);
   wanted_for.clear();
   reread = true;
 }

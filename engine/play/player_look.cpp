@@ -312,15 +312,19 @@ void Player::reload_pictures() {
 Result<void> Player::open_footage(const std::vector<std::string>& inputs) {
   State& s = *state_;
   FootageOptions wanted = s.options.footage;
-  wanted.inputs = inputs;
+  wanted.inputs = inputs.size() > 1 && wanted.whole_sequences ? in_sequences(inputs) : inputs;
   wanted.frames.clear();
+  const std::vector<std::string> asked = wanted.inputs;
+  const bool before_said = s.footage->fps().has_value();
   const bool was_playing = s.transport.playing();
   AFTERGLOW_CHECK(s.open_row(std::move(wanted)));
-  const bool stands = s.options.footage.inputs != inputs;  // at the frame of a sequence that was asked for
-  if (!s.options.fps && s.footage->fps()) s.transport.set_fps(*s.footage->fps(), s.now());
+  const bool stands = s.options.footage.inputs != asked;  // at the frame of a sequence that was asked for
+  // A rate that the footage before said is not that of pictures which say none.
+  if (!s.options.fps && (s.footage->fps() || before_said)) s.transport.set_fps(s.usual_fps(), s.now());
   s.begin_reading();
   s.want_pictures();
   s.shown.position = -1;
+  s.forget_finite();
   s.dirty = true;
   if (was_playing && !stands) s.transport.play(s.now());
   return {};
@@ -333,9 +337,7 @@ Result<void> Player::open_preset(const std::filesystem::path& preset) {
   s.first = std::move(opened);
   s.options.preset = preset;
   s.measured = 0;
-  s.asked_finite.reset();
-  s.told_finite.clear();
-  s.shown.not_finite.reset();
+  s.forget_finite();
   s.edits = {};
   s.dirty = true;
   s.follow_needs();

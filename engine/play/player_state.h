@@ -59,14 +59,21 @@ struct Player::State {
   std::unique_ptr<ReadAhead> ahead;         // its threads use the rest, as that of the next does
   std::unique_ptr<FootageWatch> rendering;  ///< null: files stay as they are
 
-  std::optional<std::pair<std::uint64_t, int>> asked_finite;  ///< what was looked at last: build and position
-  std::set<std::string> told_finite;                          ///< passes that were told, since all was well
-  std::unique_ptr<FiniteWatch> finite_watch;                  ///< null: nobody looks
+  /// What was looked at last.
+  struct AskedFinite {
+    std::uint64_t build = 0;
+    std::weak_ptr<const ReadPicture> picture;
+  };
+  std::optional<AskedFinite> asked_finite;
+  void forget_finite();
+  std::set<std::string> told_finite;          ///< passes that were told, since all was well
+  std::unique_ptr<FiniteWatch> finite_watch;  ///< null: nobody looks
 
   std::unique_ptr<Sound> sound;  ///< null: all is silent
   SoundFollower sound_follower;
 
   double now() const { return options.clock(); }
+  double usual_fps() const { return options.fps.value_or(footage->fps().value_or(24)); }
   void wake();
   LiveOptions live_options(const std::vector<Override>& overrides);
   void begin_reading();

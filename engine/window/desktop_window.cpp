@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -145,6 +146,10 @@ void DesktopWindow::take(GLFWwindow* window, const InputEvent& event) {
 
 int key_of_letter(int key, const char* name) {
   if (!name || name[0] == '\0' || name[1] != '\0') return key;
+  constexpr std::string_view kSigns = "+=-,.[]/";
+  constexpr int kKeys[] = {GLFW_KEY_EQUAL,  GLFW_KEY_EQUAL,        GLFW_KEY_MINUS,         GLFW_KEY_COMMA,
+                           GLFW_KEY_PERIOD, GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_SLASH};
+  if (const std::size_t sign = kSigns.find(name[0]); sign != kSigns.npos) return kKeys[sign];
   const char letter = static_cast<char>(name[0] & ~0x20);  // in capitals
   return letter >= 'A' && letter <= 'Z' ? GLFW_KEY_A + (letter - 'A') : key;
 }
@@ -230,6 +235,14 @@ Rect DesktopWindow::place() const {
 void DesktopWindow::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 /// X11 answers each question by a way to the server and back: asked once after each change.
+void DesktopWindow::hide() { glfwHideWindow(window_); }
+
+void DesktopWindow::restore() {
+  if (!glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) return;
+  glfwRestoreWindow(window_);
+  glfwRequestWindowAttention(window_);
+}
+
 DesktopWindow::Extent DesktopWindow::extent() const {
   if (extent_) return *extent_;
   Extent& out = extent_.emplace();

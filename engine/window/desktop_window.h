@@ -27,8 +27,8 @@ struct WindowEvents {
   std::vector<std::filesystem::path> dropped;
 };
 
-/// The key (GLFW_KEY_…) whose letter a key has in the layout that is in use, by its name there ("a"); keys without a
-/// letter of ASCII stay what they are.
+/// The key (GLFW_KEY_…) whose letter or sign of shortcuts a key has in the layout that is in use, by its name there
+/// ("a", "+"); others stay what they are.
 int key_of_letter(int key, const char* name);
 
 /// One at a time in a process; main thread alone, except where noted.
@@ -46,6 +46,9 @@ class DesktopWindow {
   GLFWwindow* handle() const { return window_; }
 
   void show();
+  void hide();
+  /// Shows it again where it is minimised, and asks for attention.
+  void restore();
   /// Of its upper left corner, on the desktop. A place that no monitor shows is left to the desktop.
   void move_to(int x, int y);
   /// Where it is, or was before it filled the screen. On desktops that tell nobody, x and y are 0.

@@ -42,7 +42,9 @@ bool WindowApp::act_on_transport(Action action) {
   const double now = player_.now();
   Ui& ui = interface_->ui();
   const auto faster = [&](double factor) {
-    t.set_speed(t.speed() * factor, now);
+    const double speed = t.speed() * factor;
+    // Halves and doubles of 1, which they come back to.
+    if (std::abs(speed) >= Transport::kSlowest && std::abs(speed) <= Transport::kFastest) t.set_speed(speed, now);
     ui.say(fmt::format("speed {:g}×", t.speed()));
   };
   switch (action) {

@@ -61,6 +61,7 @@ Result<void> WindowApp::run() {
     take_events();
     quit_ = quit_ || options_.interrupted();
   }
+  window_.hide();  // what is being read may take a while to end
   diagnostics_.note(fmt::format("window closed: {} frames drawn", painter_->swapchain().counters().presented));
   return {};
 }

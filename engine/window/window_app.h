@@ -45,7 +45,9 @@ class WindowApp {
   void follow_pane();
   void mark_pane(Pane pane, ImVec2 at, ImVec2 size) const;
   const char* window_of(Pane pane) const;
-  void open_dropped(const std::filesystem::path& path);
+  void open_preset(const std::filesystem::path& path);
+  void open_footage(const std::vector<std::filesystem::path>& paths);
+  void tell_opened(const Result<void>& opened, const std::vector<std::filesystem::path>& paths);
   void open_other(const std::filesystem::path& path);
   void browse_presets();
   void note_step(const Step& step);

@@ -33,14 +33,16 @@ void WindowApp::take_events() {
   if (events.close) ask_to_quit();
   for (const InputEvent& event : events.input) input_.push(event);
   deliver_input();
+  std::vector<std::filesystem::path> pictures;
   for (const auto& path : events.dropped) {
     if (is_preset(path)) {
       ask_to_quit(path);
     } else {
-      open_dropped(path);
+      pictures.push_back(path);
     }
   }
-  for (const auto& path : std::exchange(to_open_, {})) open_dropped(path);
+  if (!pictures.empty()) open_footage(pictures);
+  for (const auto& path : std::exchange(to_open_, {})) open_preset(path);
   for (const auto& path : std::exchange(others_to_open_, {})) open_other(path);
 }
 
@@ -129,11 +131,12 @@ void WindowApp::ask_to_quit(const std::filesystem::path& to_open_then) {
   to_open_then_ = to_open_then;
   if (options_.saving && options_.saving() == WindowOptions::Saving::busy) {
     quitting_ = Quitting::waiting;  // what is being written is no loss
-    return;
+    return window_.restore();       // minimised, nothing goes on
   }
   const bool unsaved = options_.unsaved && !options_.unsaved(player_, to_open_then.empty()).empty();
   if (!unsaved) return leave();
   quitting_ = Quitting::asked;
+  window_.restore();  // a question that nobody sees
   diagnostics_.note("asked whether to save");
 }
 
@@ -181,16 +184,28 @@ void WindowApp::input_seen() {
   deliver_input();
 }
 
-/// A preset takes the preset's place, anything else the footage's.
-void WindowApp::open_dropped(const std::filesystem::path& path) {
-  Ui& ui = interface_->ui();
-  const bool preset = is_preset(path);
+/// In the preset's place.
+void WindowApp::open_preset(const std::filesystem::path& path) {
+  (void)painter_->finish();  // see open_footage
+  const Result<void> opened = player_.open_preset(path);
+  if (opened && options_.preset_opened) options_.preset_opened(path);
+  tell_opened(opened, {path});
+}
+
+/// In the footage's place, one after the other.
+void WindowApp::open_footage(const std::vector<std::filesystem::path>& paths) {
   // What is closed for it may still be on its way to the screen. A lost device shows up in the next turn.
   (void)painter_->finish();
-  const Result<void> opened = preset ? player_.open_preset(path) : player_.open_footage({path.string()});
-  if (opened && preset && options_.preset_opened) options_.preset_opened(path);
-  ui.say(opened ? fmt::format("opened {}", path.filename().string()) : opened.error().text());
-  diagnostics_.note(opened ? fmt::format("opened {}", path.string()) : opened.error().text());
+  std::vector<std::string> inputs;
+  for (const auto& path : paths) inputs.push_back(path.string());
+  tell_opened(player_.open_footage(inputs), paths);
+}
+
+void WindowApp::tell_opened(const Result<void>& opened, const std::vector<std::filesystem::path>& paths) {
+  const std::string more = paths.size() > 1 ? fmt::format(" and {} more", paths.size() - 1) : "";
+  const auto& path = paths.front();
+  interface_->ui().say(opened ? fmt::format("opened {}{}", path.filename().string(), more) : opened.error().text());
+  diagnostics_.note(opened ? fmt::format("opened {}{}", path.string(), more) : opened.error().text());
   redraw_ = kSettle;
 }
 
@@ -203,7 +218,7 @@ void WindowApp::browse_presets() {
 
 /// A preset becomes B, and is seen beside the first.
 void WindowApp::open_other(const std::filesystem::path& path) {
-  (void)painter_->finish();  // see open_dropped
+  (void)painter_->finish();  // see open_footage
   const Result<void> opened = player_.open_other(path);
   if (opened) player_.view().compare = Compare::other;
   interface_->ui().say(opened ? fmt::format("opened {} as B", path.filename().string()) : opened.error().text());

@@ -190,6 +190,14 @@ TEST(Pattern, AFrameHasItsSequenceAroundIt) {
     EXPECT_EQ(around(name), "none") << name;
 }
 
+TEST(Pattern, PicturesOfOneSequenceAreOneInput) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.0001.exr", "a.0002.exr", "a.0003.exr", "still.exr"}) std::ofstream(folder / name) << "x";
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  EXPECT_EQ(in_sequences({file("a.0002.exr"), file("still.exr"), file("a.0003.exr")}),
+            (std::vector<std::string>{file("a.####.exr"), file("still.exr")}));
+}
+
 TEST(Frames, AreReadBackAsTheyWereWritten) {
   for (const std::vector<int>& frames : {std::vector<int>{},
                                          {7},

@@ -270,7 +270,14 @@ TEST_F(PlayerTest, FramesThatAreStillRenderedAreShownAsTheyCome) {
   turn();
   EXPECT_EQ(player.shown().number, 3);
   EXPECT_EQ(player.transport().position(), 3);
+  EXPECT_EQ(player.shown().position, 3);
   EXPECT_FLOAT_EQ(source(), 0.75f);
+  player.transport().go_to(7, seconds_);
+  turn();
+  EXPECT_EQ(player.shown().number, 7);
+  fs::remove(path("s.7.exr"));
+  EXPECT_TRUE(until([&] { return player.footage().frames() < 8; }));
+  EXPECT_LT(player.shown().position, player.footage().frames()) << "the frame that was shown is gone";
 }
 
 TEST_F(PlayerTest, ShowsImagesBetweenPasses) {

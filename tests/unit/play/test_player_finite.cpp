@@ -109,6 +109,24 @@ TEST_F(PlayerFinite, AFrameThatStandsStillIsLookedAt) {
   EXPECT_THAT(blamed(), IsEmpty());
 }
 
+/// Another picture at the same place is another one to look at.
+TEST_F(PlayerFinite, OtherFootageIsLookedAtAnew) {
+  write_root(0.2);
+  PlayerOptions options;
+  options.footage.inputs = {path("s.1.exr")};
+  options.finite_watch = {.device = {.device = "auto"}, .until_asked = true};
+  Player& player = open(options);
+  turn();
+  EXPECT_THAT(blamed(), ElementsAre("root.root"));
+  ASSERT_TRUE(player.open_footage({path("s.3.exr")}));
+  EXPECT_FALSE(player.shown().not_finite) << "it was of the other one";
+  turn();
+  EXPECT_THAT(blamed(), IsEmpty());
+  ASSERT_TRUE(player.open_footage({path("s.1.exr")}));
+  turn();
+  EXPECT_THAT(blamed(), ElementsAre("root.root"));
+}
+
 TEST_F(PlayerFinite, WithoutAWatchNobodyLooks) {
   write_root(1);
   open();

@@ -56,6 +56,8 @@ TEST(Shortcuts, LettersAreThoseOfTheLayout) {
   EXPECT_EQ(key_of_letter(GLFW_KEY_LEFT_BRACKET, "\xc3\xbc"), GLFW_KEY_LEFT_BRACKET);
   EXPECT_EQ(key_of_letter(GLFW_KEY_Q, "\xd0\xb9"), GLFW_KEY_Q) << "no letter of ASCII";
   EXPECT_EQ(key_of_letter(GLFW_KEY_F1, nullptr), GLFW_KEY_F1);
+  EXPECT_EQ(key_of_letter(GLFW_KEY_RIGHT_BRACKET, "+"), GLFW_KEY_EQUAL) << "zoom, on German keyboards too";
+  EXPECT_EQ(key_of_letter(GLFW_KEY_SLASH, "-"), GLFW_KEY_MINUS);
   EXPECT_EQ(key_of_letter(GLFW_KEY_GRAVE_ACCENT, "@"), GLFW_KEY_GRAVE_ACCENT);
 }
 
