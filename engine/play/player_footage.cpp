@@ -60,7 +60,7 @@ void Player::State::take_footage() {
   const int asked = transport.position();
   transport.resize(footage->frames(), now());
   // The frames that are asked for and shown stay, though others may have come before them.
-  if (const auto at = moved(*older, asked, *footage)) transport.go_to(*at, now());
+  if (const auto at = moved(*older, asked, *footage); at && *at != transport.position()) transport.go_to(*at, now());
   if (shown.position >= 0) shown.position = moved(*older, shown.position, *footage).value_or(-1);
   wanted_for.clear();
   reread = true;

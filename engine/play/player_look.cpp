@@ -162,9 +162,9 @@ Result<Picture> Player::screenshot() {
     out = s.picture->picture;
   }
   out.content.clear();
-  const DeviceImages images = s.first->images();
   if (!s.first->live().stack())
     return Error{ErrorKind::script, "the preset has no version that runs yet; nothing is written"};
+  const DeviceImages images = s.first->images();
   if (!images.ran) return out;
   AFTERGLOW_CHECK(s.first->read_result(s.result));
   const Size size = images.result.binding.size;

@@ -436,5 +436,19 @@ TEST_F(PlayerTest, ProxiesHaveFourSizes) {
   }
 }
 
+/// A file that says it is graded must be.
+TEST_F(PlayerTest, WithoutALookThatRunsThereIsNoScreenshot) {
+  write("look.lua", "return {");
+  write_sequence(1);
+  Player& player = open();
+  turn();
+  const auto picture = player.screenshot();
+  ASSERT_FALSE(picture);
+  EXPECT_THAT(picture.error().message, ::testing::HasSubstr("no version that runs yet"));
+  write_look("look.lua", 1);
+  reload();
+  EXPECT_TRUE(player.screenshot());
+}
+
 }  // namespace
 }  // namespace afterglow
