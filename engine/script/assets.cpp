@@ -88,7 +88,7 @@ void make_room(Assets& assets, std::size_t bytes) {
     auto oldest = assets.pictures.end();
     for (auto it = assets.pictures.begin(); it != assets.pictures.end(); ++it) {
       const ReadPicture& picture = it->second;
-      const bool ours = picture.data && picture.key && picture.data.use_count() == 2;  // this and the store
+      const bool ours = picture.data && picture.key && picture.data.use_count() <= 2;  // this and the store
       if (ours && (oldest == assets.pictures.end() || picture.used < oldest->second.used)) oldest = it;
     }
     if (oldest == assets.pictures.end()) return;
