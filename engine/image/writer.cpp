@@ -46,7 +46,8 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
     case OutputKind::exr:
       break;
     case OutputKind::png:
-      return write_png(picture, strip_form(picture, format, options), out, options.png_level.value_or(1), options.memory);
+      return write_png(picture, strip_form(picture, format, options), out, options.png_level.value_or(1),
+                       options.memory);
     case OutputKind::cineon:
       return write_cineon(picture, strip_form(picture, format, options), out);
     case OutputKind::ppm:
