@@ -139,7 +139,13 @@ Result<bench::StabilityRequest> BenchArguments::shots() const {
 Result<std::vector<std::filesystem::path>> BenchArguments::files() const {
   std::vector<std::filesystem::path> out;
   for (const auto& name : presets) {
-    AFTERGLOW_TRY(out.emplace_back(), find_preset_file(name, {preset.paths.begin(), preset.paths.end()}));
+    AFTERGLOW_TRY(auto file, find_preset_file(name, {preset.paths.begin(), preset.paths.end()}));
+    const auto same = [&](const std::filesystem::path& other) { return other.stem() == file.stem(); };
+    if (const auto other = std::ranges::find_if(out, same); other != out.end())
+      return Error{ErrorKind::usage,
+                   fmt::format("reports name looks by their files' names, and {} has the same", other->string()),
+                   file.string(), 0, "one at a time, or another name"};
+    out.push_back(std::move(file));
   }
   return out;
 }

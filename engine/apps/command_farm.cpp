@@ -27,9 +27,17 @@ Result<void> report_on(const farm::Job& job, const FarmArguments& a) {
   return {};
 }
 
+/// Of a job that another scheduler has: `what` is left to that one.
+Result<void> check_submitted(const farm::Job& job, const char* what) {
+  AFTERGLOW_TRY(const auto submissions, farm::read_submissions(job));
+  if (!submissions.arrays.empty()) return {};
+  return Error{ErrorKind::io, fmt::format("was not submitted to Slurm; {} where it was", what), job.folder.string()};
+}
+
 /// What follows a submission.
 Result<void> go_on(const farm::Job& job, const FarmArguments& a, Console& console) {
   if (!a.wait) return {};
+  AFTERGLOW_CHECK(check_submitted(job, "wait for it"));
   const auto done = wait_for_job(job, console);
   if (!a.run.report.empty() && (done || done.error().kind != ErrorKind::interrupted))
     AFTERGLOW_CHECK(report_on(job, a));
@@ -71,6 +79,7 @@ Result<void> run_submit(const FarmArguments& a, Console& console) {
 }
 
 Result<void> run_retry(farm::Job job, const FarmArguments& a, Console& console) {
+  AFTERGLOW_CHECK(check_submitted(job, "start what is missing"));
   AFTERGLOW_TRY(const auto status, farm::status_of(job));
   const auto tasks = farm::tasks_to_retry(job, status);
   if (!tasks.empty()) {
@@ -79,6 +88,10 @@ Result<void> run_retry(farm::Job job, const FarmArguments& a, Console& console) 
           std::pair(&a.needs.memory, &job.needs.memory)})
       if (!given->empty()) *kept = *given;
     if (!a.needs.more.empty()) job.needs.more = a.needs.more;
+    if (a.gives("--retries")) {
+      job.needs.retries = a.needs.retries;
+      AFTERGLOW_CHECK(farm::write_task_script(job));
+    }
     AFTERGLOW_TRY(const auto submitted, farm::submit(job, tasks));
     tell_submission(job, submitted, tasks);
   } else {

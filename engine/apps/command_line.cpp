@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -122,7 +123,10 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
     program.parse(argc, argv);
     return std::nullopt;
   } catch (const CLI::Success& wanted) {  // --help, --version
-    return program.exit(wanted);
+    std::ostringstream text;
+    const int exit_code = program.exit(wanted, text, text);
+    output("{}", text.str());
+    return exit_code;
   } catch (const CLI::ExtrasError&) {
     const Command* command = parsed_command(commands);
     const CLI::App& app = command ? *command->options : program;

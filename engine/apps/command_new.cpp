@@ -19,6 +19,7 @@
 #include "apps/output.h"
 #include "core/file.h"
 #include "core/paths.h"
+#include "core/process.h"
 #include "script/preset.h"
 
 namespace afterglow {
@@ -62,21 +63,45 @@ Result<std::vector<NewFile>> files_of(const fs::path& templates, const std::stri
   return files;
 }
 
-/// Writes a file that must not exist. Errors: io.
-Result<void> write_new(const fs::path& path, const NewFile& file) {
-  std::error_code ec;
-  fs::create_directories(path.parent_path(), ec);
-  const auto failed = [&] {
+/// What was written, to be taken away again.
+class Written {
+ public:
+  /// A file that must not exist, with its folders. Errors: io.
+  Result<void> add(const fs::path& path, const NewFile& file) {
+    std::error_code ec;
+    std::vector<fs::path> missing;
+    for (fs::path folder = path.parent_path(); !folder.empty() && !fs::exists(folder, ec);
+         folder = folder.parent_path())
+      missing.push_back(folder);
+    made_.insert(made_.end(), missing.rbegin(), missing.rend());
+    fs::create_directories(path.parent_path(), ec);
+    const int out = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, file.executable ? 0777 : 0666);
+    if (out >= 0) made_.push_back(path);
+    if (out >= 0 && write_all(out, file.text)) return {};
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(errno)), path.string()};
-  };
-  const int out = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, file.executable ? 0777 : 0666);
-  if (out < 0) return failed();
-  const bool whole = write(out, file.text.data(), file.text.size()) == static_cast<ssize_t>(file.text.size());
-  if ((close(out) == 0) & whole) return {};
-  const Error error = failed();
-  fs::remove(path, ec);
-  return error;
-}
+  }
+  void discard() const {
+    std::error_code ec;
+    for (auto one = made_.rbegin(); one != made_.rend(); ++one) fs::remove(*one, ec);  // of folders the empty ones
+  }
+
+ private:
+  /// And closes it. On failure errno tells.
+  static bool write_all(int file, std::string_view text) {
+    bool good = true;
+    while (good && !text.empty()) {
+      const ssize_t written = write(file, text.data(), text.size());
+      if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+      good = written > 0 || errno == EINTR;
+    }
+    const int reason = errno;
+    if (close(file) != 0) return false;
+    errno = reason;
+    return good;
+  }
+
+  std::vector<fs::path> made_;  ///< folders before what lies in them
+};
 
 Result<void> run_new(const NewArguments& arguments) {
   const fs::path folder = arguments.folder;
@@ -87,17 +112,17 @@ Result<void> run_new(const NewArguments& arguments) {
   for (const auto& file : files)
     if (fs::exists(fs::symlink_status(folder / file.path)))
       return Error{ErrorKind::io, "exists already; nothing was written", (folder / file.path).string()};
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto written = write_new(folder / files[i].path, files[i]);
-    if (written) continue;
-    std::error_code ignored;
-    for (std::size_t done = 0; done < i; ++done) fs::remove(folder / files[done].path, ignored);
-    return written;
+  Written written;
+  for (const auto& file : files) {
+    auto done = written.add(folder / file.path, file);
+    if (done) continue;
+    written.discard();
+    return done;
   }
   const auto place = [&](const std::string& file) { return (folder / file).lexically_normal().string(); };
   for (const auto& file : files) output("{}\n", place(file.path));
-  output("Try it:  afterglow run {} PICTURE -o out.png\n", place(arguments.name + ".lua"));
-  if (is_effect) output("Test it: {}\n", place("tests/" + arguments.name + ".sh"));
+  output("Try it:  afterglow run {} PICTURE -o out.png\n", shell_word(place(arguments.name + ".lua")));
+  if (is_effect) output("Test it: {}\n", shell_word(place("tests/" + arguments.name + ".sh")));
   return {};
 }
 

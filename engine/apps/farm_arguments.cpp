@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 
 #include "core/exception.h"
 #include "core/text.h"
@@ -17,6 +18,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array kWords{"status", "report", "cancel", "retry", "chunk", "join"};
+/// What the words take besides their job and what is for messages.
+const std::map<std::string, std::vector<std::string>> kOfWords{
+    {"status", {"--all", "--wait", "--report"}},
+    {"report", {"--report"}},
+    {"cancel", {}},
+    {"retry", {"--partition", "--time", "--mem", "--retries", "--wait", "--report"}},
+    {"chunk", {}},
+    {"join", {}}};
+constexpr std::array kOfMessages{"--help", "--verbose", "--quiet", "--no-color"};
 /// Of `run`, what chunks decide themselves, and what is for streams.
 constexpr std::array kNotForFarms{"--resume", "--watch", "--fail-fast", "--sandbox",
                                   "--lock",   "--stats", "--report",    "--raw"};
@@ -107,13 +117,28 @@ std::vector<std::string> farm_words() { return {kWords.begin(), kWords.end()}; }
 
 std::string FarmArguments::word() const { return is_one_of(run.preset.file, kWords) ? run.preset.file : std::string(); }
 
+Result<void> FarmArguments::check_options_of(const std::string& asked) const {
+  const auto& taken = kOfWords.at(asked);
+  const std::string allowed = taken.empty() ? "its job alone" : join(taken);
+  const auto refused = [&](const std::string& what) {
+    return Error{ErrorKind::usage, fmt::format("{} cannot go with '{}'", what, asked), "afterglow farm", 0, allowed};
+  };
+  for (const CLI::Option* option : app->get_options()) {
+    const std::string name = long_name(*option);
+    if (option->count() == 0 || name.empty() || is_one_of(name, kOfMessages)) continue;
+    if (std::ranges::find(taken, name) == taken.end()) return refused(name);
+  }
+  if (!needs.more.empty() && asked != "retry") return refused("words behind --");
+  return {};
+}
+
 Result<void> FarmArguments::check_word() const {
   const std::string asked = word();
   if (!asked.empty()) {
     const std::size_t most = asked == "chunk" ? 2 : 1;
     if (run.files.inputs.size() > most)
       return Error{ErrorKind::usage, fmt::format("'{}' is for one job", asked), "afterglow farm"};
-    return {};
+    return check_options_of(asked);
   }
   const std::vector<std::string> words = farm_words();
   const std::string nearest = nearest_name(run.preset.file, words);
@@ -124,7 +149,7 @@ Result<void> FarmArguments::check_word() const {
   if (run.files.inputs.empty()) return Error{ErrorKind::usage, "INPUT is required", "afterglow farm"};
   if (run.files.output.empty()) return Error{ErrorKind::usage, "--output is required", "afterglow farm"};
   for (const auto& word : needs.more)
-    if (word == "-a" || word.starts_with("--array"))
+    if (word.starts_with("-a") || word.starts_with("--ar"))
       return Error{ErrorKind::usage, fmt::format("'{}': the array is that of the chunks", word), "afterglow farm", 0,
                    "--chunk for other ones"};
   if (!jobs.empty() && (wait || dry_run))

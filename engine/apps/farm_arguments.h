@@ -25,8 +25,13 @@ struct FarmArguments {
   /// The words of `run` that were given, but for the inputs and --frames, with the look's files as they lie in the
   /// pack of `folder`. `preset` is the look's file.
   std::vector<std::string> packed_words(const std::filesystem::path& preset, const std::filesystem::path& folder) const;
+  /// Whether that option is among the arguments.
+  bool gives(const std::string& option) const { return app->get_option(option)->count() > 0; }
   /// What is given besides a look, where a word stands in its place. Errors: usage.
   Result<void> check_word() const;
+
+ private:
+  Result<void> check_options_of(const std::string& word) const;
 };
 
 /// What may stand in the place of a look: status, report, …

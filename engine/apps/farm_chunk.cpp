@@ -110,7 +110,7 @@ Result<void> run_task(const farm::Job& job, std::size_t task, Console& console) 
 }  // namespace
 
 Result<void> run_chunk(const std::string& job_folder, const std::string& number, Console& console) {
-  AFTERGLOW_TRY(const farm::Job job, farm::read_job(job_folder));
+  AFTERGLOW_TRY(const farm::Job job, farm::find_job(job_folder));
   AFTERGLOW_TRY(const std::size_t task, task_number(job, number));
   return run_task(job, task, console);
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/inside.h"
 #include "core/own_file.h"
 #include "core/version.h"
 #include "farm/look.h"
@@ -80,7 +81,7 @@ Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, c
   unsetenv("AFTERGLOW_PATH");  // its folders are among the words
   AFTERGLOW_TRY(const BatchRequest packed, request_of_words(job.run));
   AFTERGLOW_CHECK(farm::lock_packed_look(packed, frames, arguments.run.locked, job, console.diagnostics()));
-  AFTERGLOW_CHECK(write_file_atomically(job.folder / "task.sh", farm::task_script(job)));
+  AFTERGLOW_CHECK(farm::write_task_script(job));
   return farm::write_job(job);
 }
 
@@ -107,7 +108,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   job.version = version();
   job.at = fs::current_path(ec);
   job.look = arguments.run.preset.file;
-  if (video) job.video = (job.at / request.files.output).lexically_normal().string();
+  if (video) job.video = whole_path(job.at / request.files.output).string();
   job.holds_missing = std::ranges::any_of(out.frames, [](const FrameJob& frame) { return frame.missing > 0; });
   job.pre_roll = look.pre_roll;
   job.needs = arguments.needs;
@@ -115,7 +116,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   AFTERGLOW_CHECK(check_sequences(out));
   const fs::path outputs = folder_of_outputs(request.files.output);
   if (!write) {
-    job.folder = (job.at / outputs / farm::kFolder / farm::new_job_id()).lexically_normal();
+    job.folder = whole_path(job.at / outputs) / farm::kFolder / farm::new_job_id();
     job.id = job.folder.filename().string();
     return out;
   }

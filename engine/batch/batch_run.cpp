@@ -236,7 +236,7 @@ Result<void> check_written(const BatchRequest& request, FilesOfFrames frames,
   read.insert(read.end(), look.begin(), look.end());
   read.insert(read.end(),
               {request.preset, request.locked, request.session.stack.calibration, request.loop.write.video.audio});
-  return check_written(request.beside, frames.outputs, read);
+  return check_written(request.beside, frames.outputs, read, new_folder(request.files.output));
 }
 
 bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {

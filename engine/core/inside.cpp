@@ -35,4 +35,16 @@ std::vector<fs::path> own_first(std::vector<fs::path> folders, const fs::path& f
   return folders;
 }
 
+fs::path whole_path(const fs::path& path) {
+  std::error_code ec;
+  fs::path out = fs::absolute(path, ec);
+  const auto is_up = [](const fs::path& part) { return part == ".."; };
+  if (is_up(out.filename()))
+    out = fs::weakly_canonical(out, ec);
+  else if (std::ranges::any_of(out, is_up))
+    out = fs::weakly_canonical(out.parent_path(), ec) / out.filename();
+  out = out.lexically_normal();
+  return out.has_filename() ? out : out.parent_path();
+}
+
 }  // namespace afterglow

@@ -18,4 +18,8 @@ bool is_named_in(const std::filesystem::path& file, const std::filesystem::path&
 std::vector<std::filesystem::path> own_first(std::vector<std::filesystem::path> folders,
                                              const std::filesystem::path& file);
 
+/// Absolute, without "." and ".." and a '/' at its end. Where ".." leads is asked of the system, for the folder before
+/// it may be a link; other links keep their names.
+std::filesystem::path whole_path(const std::filesystem::path& path);
+
 }  // namespace afterglow

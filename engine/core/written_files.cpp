@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -37,13 +39,17 @@ struct Place {
   auto operator<=>(const Place&) const = default;
 };
 
+/// That it lies in, behind links.
+fs::path folder_of(const fs::path& file) {
+  std::error_code ec;
+  const fs::path target = behind_links(file);
+  return fs::weakly_canonical(target.has_parent_path() ? target.parent_path() : fs::path("."), ec);
+}
+
 Place place_of(const fs::path& file) {
   struct stat found {};
   if (stat(file.c_str(), &found) == 0) return {found.st_dev, found.st_ino, {}};
-  std::error_code ec;
-  const fs::path target = behind_links(file);
-  const fs::path folder = fs::weakly_canonical(target.has_parent_path() ? target.parent_path() : fs::path("."), ec);
-  return {0, 0, folder / target.filename()};
+  return {0, 0, folder_of(file) / behind_links(file).filename()};
 }
 
 /// One that is read: itself, or the pack that it lies in. None: it is not there.
@@ -80,10 +86,19 @@ Result<void> check_form(const SideFile& side) {
   return refused(side.file, fmt::format("is no {} file, and {} would replace it", known.front(), side.option));
 }
 
+/// A file beside the results is written last: that its folder takes none would be found out behind all the work.
+Result<void> check_folder(const SideFile& side, const fs::path& to_be_made) {
+  const fs::path folder = folder_of(side.file);
+  if (access(folder.c_str(), W_OK | X_OK) == 0) return {};
+  const int reason = errno;
+  if (reason == ENOENT && !to_be_made.empty() && folder == folder_of(to_be_made / "file")) return {};
+  return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), side.file.string()};
+}
+
 }  // namespace
 
 Result<void> check_written(std::span<const SideFile> sides, std::span<const fs::path> outputs,
-                           std::span<const fs::path> read) {
+                           std::span<const fs::path> read, const fs::path& to_be_made) {
   std::map<Place, fs::path> taken;
   for (const auto& file : read)
     if (auto place = place_of_read(file)) taken.emplace(*std::move(place), file);
@@ -104,6 +119,7 @@ Result<void> check_written(std::span<const SideFile> sides, std::span<const fs::
       return refused(side.file, fmt::format("{} and {} would both be written there", other->second, side.option));
     AFTERGLOW_CHECK(check_form(side));
     AFTERGLOW_CHECK(check_replaceable(side.file));
+    AFTERGLOW_CHECK(check_folder(side, to_be_made));
   }
   return {};
 }

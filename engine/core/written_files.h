@@ -22,9 +22,10 @@ struct SideFile {
 };
 
 /// Before any work: that no side file and no output would take the place of one that is read or of each other, and that
-/// what lies where a side file goes is of its form and may be written. Outputs may be the same file. Files within packs
-/// stand for the packs. Errors: usage, io (may not be written).
+/// what lies where a side file goes is of its form and may be written, and its folder is there (but for `to_be_made`, a
+/// folder that comes with the results) and takes files. Outputs may be the same file. Files within packs stand for the
+/// packs. Errors: usage, io (may not be written).
 Result<void> check_written(std::span<const SideFile> sides, std::span<const std::filesystem::path> outputs,
-                           std::span<const std::filesystem::path> read);
+                           std::span<const std::filesystem::path> read, const std::filesystem::path& to_be_made = {});
 
 }  // namespace afterglow

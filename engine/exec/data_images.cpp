@@ -2,8 +2,9 @@
 #include "exec/data_images.h"
 
 #include <cstring>
+#include <utility>
 
-#include "exec/staging.h"
+#include "exec/submit.h"
 
 namespace afterglow {
 namespace {
@@ -26,25 +27,26 @@ Result<DataImages> DataImages::create(const Device& device, const Graph& graph, 
   for (std::size_t i = 0; i < graph.images.size(); ++i) {
     if (!graph.images[i].data) continue;
     AFTERGLOW_TRY(GpuImage image, make(device, graph.images[i], storage));
-    out.images_.emplace(static_cast<ImageId>(i), std::move(image));
+    out.images_.emplace(static_cast<ImageId>(i), Held{std::move(image)});
   }
   return out;
 }
 
 Result<void> DataImages::fill(const Device& device, const Graph& graph) {
-  if (full_ || images_.empty()) return {};
-  Staging staging(device);
   std::vector<VkImageMemoryBarrier2> barriers;
-  for (const auto& [id, image] : images_) {
+  for (auto& [id, held] : images_) {
     const auto& data = graph.images[id].data;
+    if (held.pixels == data->hash) continue;
+    held.pixels.reset();
     const std::size_t row = static_cast<std::size_t>(data->size.width) * 4;
     const auto pack = [&](int y, std::byte* to) -> std::uint64_t {
       std::memcpy(to, data->pixels.data() + row * static_cast<std::size_t>(y), row * sizeof(float));
       return 0;
     };
-    AFTERGLOW_CHECK(staging.upload({image.get(), kFormat, data->size}, pack));
+    if (!staging_) staging_ = std::make_unique<Staging>(device);
+    AFTERGLOW_CHECK(staging_->upload({held.image.get(), kFormat, data->size}, pack));
     if (layout_ != VK_IMAGE_LAYOUT_GENERAL) continue;
-    barriers.push_back(image_barrier(image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
+    barriers.push_back(image_barrier(held.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                      VK_IMAGE_LAYOUT_GENERAL));
@@ -55,7 +57,8 @@ Result<void> DataImages::fill(const Device& device, const Graph& graph) {
         [&](VkCommandBuffer commands) { record_barriers(device, commands, barriers.data(), barriers.size()); }));
     AFTERGLOW_CHECK(submitter.wait());
   }
-  full_ = true;
+  for (auto& [id, held] : images_) held.pixels = graph.images[id].data->hash;
+  if (!std::exchange(filled_, true)) staging_.reset();  // most looks keep what they bring along
   return {};
 }
 

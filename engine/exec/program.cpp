@@ -62,7 +62,24 @@ Result<void> Program::set_parameters(const Graph& graph) {
   if (!same_structure(state_->graph, graph)) return {};
   AFTERGLOW_CHECK(state_->parameters.write(graph));
   state_->graph.histories = graph.histories;  // values of first frames
+  state_->bring_along(graph);
   return {};
+}
+
+/// Pixels that the device does not have yet are brought to it when the program is bound again.
+void Program::State::bring_along(const Graph& given) {
+  bool changed = false;
+  for (std::size_t i = 0; i < graph.images.size(); ++i) {
+    auto& own = graph.images[i].data;
+    const auto& next = given.images[i].data;
+    changed = changed || (own && own->hash != next->hash);
+    own = next;
+  }
+  if (!changed) return;
+  for (Place& place : places) {
+    place.bound = false;
+    ++place.bindings;
+  }
 }
 
 bool Program::has_previous(const std::string& history) const {
@@ -121,6 +138,7 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
                                                      : s.look_at_input(at, id);
   };
   for (int which = 0; which < s.sets(); ++which) s.write_set(at, which, look);
+  at.bound = true;
   ++at.bindings;
   return {};
 }
@@ -163,7 +181,7 @@ std::vector<std::string> Program::warnings() const {
 }
 bool Program::bound(int place) const {
   const auto at = static_cast<std::size_t>(place);
-  return at < state_->places.size() && state_->places[at].bindings > 0;
+  return at < state_->places.size() && state_->places[at].bound;
 }
 int Program::bindings(int place) const {
   return (bound(place) ? state_->places[static_cast<std::size_t>(place)].bindings : 0) + state_->uses;

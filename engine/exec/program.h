@@ -87,7 +87,8 @@ class Program {
                                                  const Graph& graph, const ProgramOptions& options);
   ~Program();
 
-  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched. A graph of
+  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched. Where the
+  /// pixels that the graph brings along are others, no place is bound any more. A graph of
   /// another structure (`same_structure`) is ignored: it needs a program of its own. Must not be called while a
   /// submission of this program is in flight. Errors: device.
   Result<void> set_parameters(const Graph& graph);
@@ -130,16 +131,16 @@ class Program {
   /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
   /// is `result_format`. Frames that take turns, each with images of its own, have a place each (0, 1, …): what is
   /// recorded for one stays good when another is bound. Must not be called while a submission of that place is in
-  /// flight. The first time it submits what the graph brings along, and waits; each place makes its descriptors the
-  /// first time. A program whose graph's result is its source does nothing. Errors: other (no such image can be bound),
+  /// flight. It submits what the graph brings along and the device does not have yet, and waits; each place makes its
+  /// descriptors the first time. A program whose graph's result is its source does nothing. Errors: other (no such image can be bound),
   /// device.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result, int place = 0);
 
-  /// Whether `bind` has said which images `record` reads and writes.
+  /// Whether `bind` has said which images `record` reads and writes, and brought along what they are read with.
   bool bound(int place = 0) const;
 
-  /// How often images were bound so far, those of histories too. Commands that were recorded before the last time must
+  /// How often images were bound so far or came to be unbound, those of histories too. Commands that were recorded before the last time must
   /// not be submitted again.
   int bindings(int place = 0) const;
 

@@ -54,7 +54,8 @@ struct Program::State {
     Descriptors descriptors;  ///< one set for each SetOf and kernel
     std::map<ImageId, ImageBinding> inputs{};
     std::vector<VkImageView> result{};
-    int bindings = 0;  ///< of inputs and result
+    bool bound = false;
+    int bindings = 0;  ///< how often `bound` changed
   };
   std::vector<Place> places;
   /// By which of a history's two images is the previous one; alike without histories.
@@ -117,6 +118,9 @@ struct Program::State {
   Result<void> make_marks();
   Result<void> make_place();
   Result<void> make_histories();
+
+  // program.cpp
+  void bring_along(const Graph& given);
 
   // program_reuse.cpp
   void identify();

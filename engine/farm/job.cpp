@@ -14,6 +14,7 @@
 
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/inside.h"
 
 namespace afterglow::farm {
 namespace {
@@ -162,18 +163,25 @@ std::vector<Chunk> chunks_of(const std::vector<FrameJob>& jobs, int most) {
 }
 
 std::string new_job_id() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  using std::chrono::duration_cast, std::chrono::milliseconds;
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  const auto ms = duration_cast<milliseconds>(since).count();
+  const auto now = static_cast<std::time_t>(ms / 1000);
   std::tm utc{};
   gmtime_r(&now, &utc);
-  const auto ticks = static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
-  const std::string mark = Hasher().add(ticks).add(static_cast<std::uint64_t>(getpid())).finish().hex().substr(0, 4);
-  return fmt::format("{:04}{:02}{:02}-{:02}{:02}{:02}-{}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday, utc.tm_hour,
-                     utc.tm_min, utc.tm_sec, mark);
+  const std::string mark = Hasher()
+                               .add(static_cast<std::uint64_t>(since.count()))
+                               .add(static_cast<std::uint64_t>(getpid()))
+                               .finish()
+                               .hex()
+                               .substr(0, 4);
+  return fmt::format("{:04}{:02}{:02}-{:02}{:02}{:02}-{:03}-{}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec, ms % 1000, mark);
 }
 
 Result<fs::path> make_job_folder(const fs::path& outputs) {
   std::error_code ec;
-  const fs::path above = fs::absolute(outputs.empty() ? "." : outputs, ec).lexically_normal() / kFolder;
+  const fs::path above = whole_path(outputs.empty() ? "." : outputs) / kFolder;
   fs::create_directory(above, ec);
   while (!ec) {
     const fs::path folder = above / new_job_id();
@@ -202,8 +210,7 @@ Result<Job> read_job(const fs::path& folder) {
     if (version != kVersion)
       return not_a_job(file, fmt::format("it has version {}, this program reads version {}", version, kVersion));
     Job job = job_of_json(json);
-    std::error_code ec;
-    job.folder = fs::absolute(folder, ec).lexically_normal();
+    job.folder = whole_path(folder);
     return job;
   } catch (const std::exception& error) {
     return not_a_job(file, error.what());
@@ -213,8 +220,7 @@ Result<Job> read_job(const fs::path& folder) {
 Result<Job> find_job(const std::string& given) {
   const fs::path path = given.empty() ? "." : given;
   for (const fs::path& folder : {path, fs::path(kFolder) / path, latest_job(path)})
-    if (!folder.empty() && is_file(folder / "job.json"))
-      return read_job(folder.has_filename() ? folder : folder.parent_path());
+    if (!folder.empty() && is_file(folder / "job.json")) return read_job(folder);
   return Error{ErrorKind::io, "there is no farm job", path.string(), 0,
                "a job's folder as `afterglow farm` printed it, or the folder of its outputs"};
 }

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 
+#include "core/inside.h"
 #include "core/process.h"
 #include "farm/job.h"
 
@@ -18,7 +19,7 @@ constexpr int kJobsVersion = 1;
 
 /// Whole, since other schedulers may start anywhere.
 std::string whole_name(const Job& job, const std::filesystem::path& file) {
-  return (job.at / file).lexically_normal().string();
+  return whole_path(job.at / file).string();
 }
 
 /// What frames read and write, by name.

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/inside.h"
 #include "core/temporary.h"
 #include "graph/history.h"
 #include "script/build.h"
@@ -17,15 +18,6 @@ namespace afterglow::farm {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Absolute, and without ".." that would lead out of the pack.
-fs::path whole(const fs::path& path) {
-  std::error_code ec;
-  fs::path out = fs::absolute(path, ec);
-  if (std::ranges::find(out, fs::path("..")) != out.end()) out = fs::weakly_canonical(out, ec);
-  out = out.lexically_normal();
-  return out.has_filename() ? out : out.parent_path();
-}
 
 bool is_below(const fs::path& file, const fs::path& folder) {
   if (folder.empty()) return false;
@@ -59,9 +51,9 @@ Result<Inventory> inventory_of(Preset& preset, const std::vector<FrameJob>& fram
 Result<LoadedLook> load_look(const BatchRequest& request, const std::vector<FrameJob>& frames,
                              Diagnostics& diagnostics) {
   PresetOptions options = request.session.stack.preset;
-  for (auto& path : options.paths) path = whole(path);
+  for (auto& path : options.paths) path = whole_path(path);
   options.record = std::make_shared<FileRecord>();
-  const fs::path file = whole(request.preset);
+  const fs::path file = whole_path(request.preset);
   AFTERGLOW_TRY(const Loaded look, load(file, options, diagnostics));
   Preset& preset = *look.preset;
   LoadedLook out;
@@ -87,7 +79,7 @@ Result<LoadedLook> load_look(const BatchRequest& request, const std::vector<Fram
 }
 
 fs::path packed_place(const fs::path& folder, const fs::path& file) {
-  return folder / "look" / "files" / whole(file).relative_path();
+  return folder / "look" / "files" / whole_path(file).relative_path();
 }
 
 Result<void> pack_file(const fs::path& file, const std::string& name, Job& job) {

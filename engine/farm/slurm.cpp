@@ -12,10 +12,12 @@
 #include <set>
 #include <string_view>
 
+#include "core/ascii.h"
 #include "core/file.h"
 #include "core/file_lock.h"
 #include "core/json_text.h"
 #include "core/parse_number.h"
+#include "core/printable.h"
 #include "core/process.h"
 #include "core/text.h"
 
@@ -204,6 +206,10 @@ exit $code
                      shell_word(job.folder.string()), shell_word(job.program), job.chunks.size(), job.needs.retries);
 }
 
+Result<void> write_task_script(const Job& job) {
+  return write_file_atomically(job.folder / "task.sh", task_script(job));
+}
+
 std::vector<ArrayPlan> array_plans(const std::vector<std::size_t>& chunks, std::size_t most) {
   std::vector<ArrayPlan> plans;
   for (std::size_t i = 0; i < chunks.size();) {
@@ -218,13 +224,8 @@ std::vector<ArrayPlan> array_plans(const std::vector<std::size_t>& chunks, std::
 }
 
 std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan) {
-  std::vector<std::string> words{"sbatch",
-                                 "--parsable",
-                                 "--job-name=afterglow-" + job.id,
-                                 "--requeue",
-                                 "--output=/dev/null",
-                                 "--chdir=" + job.at.string(),
-                                 "--array=" + plan.tasks};
+  std::vector<std::string> words{"sbatch",    "--parsable",         "--job-name=afterglow-" + job.id,
+                                 "--requeue", "--output=/dev/null", "--chdir=" + job.at.string()};
   const auto add = [&](const char* option, const std::string& value) {
     if (!value.empty()) words.push_back(option + value);
   };
@@ -232,7 +233,8 @@ std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan) {
   add("--time=", job.needs.time);
   add("--mem=", job.needs.memory);
   words.insert(words.end(), job.needs.more.begin(), job.needs.more.end());
-  // Last, so that it counts: what the job's own words wait for, the chunks have waited for.
+  // Last, so that they count: what the job's own words wait for, the chunks have waited for.
+  words.push_back("--array=" + plan.tasks);
   if (!plan.after.empty()) words.push_back("--dependency=afterany:" + join(plan.after, ":"));
   words.push_back((job.folder / "task.sh").string());
   words.push_back(fmt::format("{}", plan.base));
@@ -282,6 +284,15 @@ Result<std::size_t> largest_array() {
   return Error{ErrorKind::io, "scontrol does not say MaxArraySize; are job arrays switched off?"};
 }
 
+/// Of what `sbatch --parsable` printed: "24" or "24;cluster", behind what wrappers and plug-ins of a site say.
+Result<SlurmArray> array_of(const std::string& printed, std::size_t base) {
+  const auto lines = lines_of(trim(printed));
+  const auto parts = split(lines.empty() ? "" : trim(lines.back()), ';');
+  const bool number = !parts.empty() && !parts[0].empty() && std::ranges::all_of(parts[0], is_digit);
+  if (number) return SlurmArray{parts[0], parts.size() > 1 ? parts[1] : "", base};
+  return Error{ErrorKind::io, fmt::format("sbatch told no number of a job: '{}'", tidy_message(trim(printed), 200))};
+}
+
 Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks) {
   AFTERGLOW_TRY(const std::size_t most, largest_array());
   const FileLock lock(lock_of(job));
@@ -295,20 +306,20 @@ Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks
   for (auto& plan : task_plans(job, tasks, most)) {
     if (is_join(job, plan)) plan.after = live;
     auto printed = output_of(sbatch_words(job, plan));
+    auto array = printed ? array_of(*printed, plan.base) : Result<SlurmArray>(std::move(printed).error());
     Result<void> noted;
-    if (printed) {
-      const auto parts = split(trim(*printed), ';');
-      all.arrays.push_back({parts[0], parts.size() > 1 ? parts[1] : "", plan.base});
-      live.push_back(parts[0]);
+    if (array) {
+      live.push_back(array->id);
+      all.arrays.push_back(*array);
       noted = write_submissions(job, all);
     }
-    if (printed && noted) continue;
+    if (array && noted) continue;
     for (std::size_t i = before; i < all.arrays.size(); ++i) {
       std::vector<std::string> words{"scancel", all.arrays[i].id};
       add_cluster(words, all.arrays[i].cluster);
       static_cast<void>(run_process(words));
     }
-    return printed ? std::move(noted).error() : std::move(printed).error();
+    return array ? std::move(noted).error() : std::move(array).error();
   }
   return all;
 }

@@ -30,6 +30,8 @@ Result<void> write_submissions(const Job& job, const Submissions& submissions);
 
 /// The script of a task, for /bin/sh; its first argument is the chunk of task 0.
 std::string task_script(const Job& job);
+/// Writes it into the job's folder; arrays that were submitted keep theirs. Errors: io.
+Result<void> write_task_script(const Job& job);
 
 /// An array that is to be submitted: its first chunk, and tasks as sbatch's --array takes them.
 struct ArrayPlan {

@@ -26,8 +26,8 @@ struct GraphImage {
   std::string name;  ///< "source", "depth", or the name of the pass that makes it
   Size size;
   int producer = -1;  ///< index of the pass that makes it; -1: an input of the graph, or what a history holds
-  /// Of an image that the look brings along (tables, pictures from files): its pixels. Such an image is no input of a
-  /// frame; the program holds it.
+  /// Of an image that the look brings along (tables, pictures from files): its pixels, which may change without a
+  /// rebuild. Such an image is no input of a frame; the program holds it.
   std::shared_ptr<const ImageData> data = {};
   /// Of an image that a pass makes: 1, 2 or 4. Readers find (r, 0, 0, 1), (r, g, 0, 1) or all four, whatever its pass
   /// says of the others and however many are stored (stored_channels).
@@ -134,7 +134,8 @@ std::vector<std::string> shaders_of(const Pass& pass);
 /// size, histories whose images exist and fit. Errors (script) name effect and pass.
 Result<void> validate(const Graph& graph);
 
-/// True when b differs from a in dynamic parameter values alone, so that a program made for a can run b.
+/// True when b differs from a in dynamic parameter values and in the pixels of what the look brings along alone, so that
+/// a program made for a can run b.
 bool same_structure(const Graph& a, const Graph& b);
 
 /// JSON for `afterglow graph --format json` and for tests.

@@ -119,9 +119,8 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
     add_mask_inputs(lua, run, MaskInputs::used_later, of_masks);
     note(of_masks);
     // Other settings may ask for other inputs: what an effect asks for by a function cannot be known before.
-    const bool effect_moves = changes && asks_by_function(*runtime, run);
-    if (effect_moves) note(auxiliary_inputs());
-    needs_move = needs_move || effect_moves || mask_inputs_move(*runtime, run);
+    needs_unknown = needs_unknown || (changes && asks_by_function(*runtime, run));
+    needs_move = needs_move || needs_unknown || mask_inputs_move(*runtime, run);
   }
 }
 
@@ -185,6 +184,12 @@ bool Preset::detailed() const {
 }
 std::uint64_t Preset::evaluations() const { return state_->evaluations; }
 const std::vector<std::string>& Preset::needs() const { return state_->needs; }
+std::vector<std::string> Preset::possible_needs() const {
+  std::vector<std::string> out = state_->needs;
+  for (const auto& input : auxiliary_inputs())
+    if (state_->needs_unknown && std::ranges::find(out, input) == out.end()) out.push_back(input);
+  return out;
+}
 std::shared_ptr<const FileProbes> Preset::probes() const { return state_->runtime->path.record->looks(); }
 const SearchPath& Preset::path() const { return state_->runtime->path; }
 const std::vector<std::filesystem::path>& Preset::scripts() const { return state_->runtime->scripts; }

@@ -182,9 +182,11 @@ class Preset {
   bool detailed() const;
   /// The light in which each entry runs, in the order of execution, with the settings of the last evaluation.
   Result<std::vector<EntrySpace>> spaces();
-  /// Names of auxiliary inputs that enabled, active effects and masks ask for; where settings may change, those that
-  /// they could ask for, as far as is known: layers that depend on the frame come with it (`note_needs`, `evaluate`).
+  /// Names of auxiliary inputs that enabled, active effects and masks ask for. Where settings may change, what depends
+  /// on the frame comes with it (`note_needs`, `evaluate`).
   const std::vector<std::string>& needs() const;
+  /// With those that frames which nobody has asked for yet could ask for, but for layers.
+  std::vector<std::string> possible_needs() const;
   /// May `needs` of some looks grow? Then asks with the settings of this frame. True: it wants inputs that were not
   /// known.
   Result<bool> note_needs(const BuildContext& context);

@@ -31,7 +31,8 @@ struct Preset::State {
   std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
   std::shared_ptr<const Explanation> loaded_so;            // of that
   std::vector<std::string> needs;
-  bool needs_move = false;  ///< other frames may ask for others
+  bool needs_move = false;     ///< other frames may ask for others
+  bool needs_unknown = false;  ///< of them, some that only a function knows
   Surroundings surroundings;
   std::shared_ptr<const Explanation> explanation;  // of that
   bool may_change = false;

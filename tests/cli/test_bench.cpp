@@ -86,6 +86,7 @@ TEST_F(Bench, CompareRefusesWhatIsNoReport) {
 }
 
 TEST_F(Bench, MistakesAreSaidBeforeAnythingIsMeasured) {
+  write("other/look.lua", read("look.lua"));
   const struct {
     std::vector<std::string> arguments;
     int exit_code;
@@ -96,6 +97,7 @@ TEST_F(Bench, MistakesAreSaidBeforeAnythingIsMeasured) {
       {{"bench", "look.lua", "--sizes", "12"}, kUsage, "no size"},
       {{"bench", "look.lua", "--quick", "--vary", "tone_mapping.mode"}, kUsage, "varies nothing"},
       {{"bench", "none.lua", "--quick"}, kScript, "none.lua"},
+      {{"bench", "look.lua", "other/look.lua", "--quick"}, kUsage, "reports name looks by their files' names"},
       {{"bench", "look.lua", "--quick", "--calibration", "none.json"}, kFiles, "none.json"},
       {{"bench", "look.lua", "--quick", "--compare", "none.json"}, kFiles, "none.json"},
       {{"bench", "look.lua", "--quick", "--compare", "look.lua"}, kFiles, "is no report of `afterglow bench`"},

@@ -78,7 +78,19 @@ TEST_F(New, NeverOverwrites) {
   EXPECT_THAT(files(), ::testing::ElementsAre("haze.lua"));
 }
 
+TEST_F(New, WhatCannotBeWrittenLeavesNothing) {
+  RunOptions options;
+  options.program = "/bin/sh";
+  const Outcome outcome =
+      run({"-c", "trap '' XFSZ; ulimit -f 1; exec \"" AFTERGLOW_PROGRAM "\" new effect haze"}, options);
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("cannot be written: File too large"));
+  EXPECT_THAT(files(), ::testing::IsEmpty());
+  EXPECT_TRUE(fs::is_empty(path("")));
+}
+
 TEST_F(New, IntoAnotherFolder) {
+  EXPECT_THAT(run({"new", "look", "dusk", "--in", "my looks"}).out, HasSubstr("run 'my looks/dusk.lua' PICTURE"));
   EXPECT_EQ(run({"new", "effect", "haze", "--in", "mine"}).exit_code, kDone);
   EXPECT_EQ(run({"check", "mine/haze.lua"}).exit_code, kDone);
 }

@@ -127,9 +127,15 @@ TEST_F(Output, ClosedStandardStreamsChangeNothing) {
 }
 
 TEST_F(Output, ReportThatCannotBeWritten) {
-  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--report", "nowhere/report.json"});
-  expect_failure(outcome, "nowhere/report.json");
+  const Outcome nowhere = run({"run", "look.lua", "a.exr", "-o", "a.png", "--report", "nowhere/report.json"});
+  expect_failure(nowhere, "nowhere/report.json");
+  EXPECT_FALSE(fs::exists(path("a.png"))) << "said before the work";
+  const Outcome full = run({"run", "look.lua", "a.exr", "-o", "a.png", "--report", "/dev/full"});
+  expect_failure(full, "/dev/full");
   EXPECT_TRUE(fs::exists(path("a.png"))) << "the picture itself is fine";
+  const Outcome beside = run({"run", "look.lua", "a.exr", "-o", "new/", "--format", "png", "--report", "new/r.json"});
+  EXPECT_EQ(beside.exit_code, kDone) << beside.err;
+  EXPECT_TRUE(fs::exists(path("new/r.json"))) << "in a folder that was made for the results";
 }
 
 TEST_F(Output, ReadOnlyFilesAreNotReplaced) {

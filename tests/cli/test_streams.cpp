@@ -53,10 +53,14 @@ TEST_F(Streams, OutputThatCannotBeWrittenIsAnError) {
 }
 
 TEST_F(Streams, AReaderThatHasEnoughIsNoError) {
-  const Outcome outcome = shell("{ \"$AFTERGLOW\" effects --markdown; echo $? > code; } | head -1");
-  EXPECT_EQ(outcome.exit_code, kDone);
-  EXPECT_THAT(outcome.err, IsEmpty());
-  EXPECT_EQ(read("code"), "0\n");
+  ASSERT_EQ(mkfifo(text("gone").c_str(), 0600), 0);
+  for (const std::string words : {"effects --markdown", "run --help", "--version"}) {
+    const Outcome outcome =
+        shell("{ read line < gone; \"$AFTERGLOW\" " + words + "; echo $? > code; } | { exec <&-; echo > gone; }");
+    EXPECT_EQ(outcome.exit_code, kDone) << words;
+    EXPECT_THAT(outcome.err, IsEmpty()) << words;
+    EXPECT_EQ(read("code"), "0\n") << words;
+  }
 }
 
 TEST_F(Streams, NamedPipesAreNoFiles) {

@@ -78,6 +78,42 @@ TEST_F(FarmFiles, GnuParallelRunsTheLines) {
   EXPECT_EQ(report_of("out")["frames_done"], 10);
 }
 
+/// Behind a link ".." leads out of where the link leads to, as for `run`.
+TEST_F(FarmFiles, OutputsBehindALinkAndUpAreWhereRunPutsThem) {
+  fs::create_directories(path("other/place"));
+  fs::create_directory_symlink(path("other/place"), path("link"));
+  ASSERT_EQ(farm({"look.lua", "in/shot.####.exr", "-o", "link/../graded/", "--jobs", "jobs.json"}).exit_code, kDone);
+  EXPECT_TRUE(fs::is_directory(path("other/graded/.afterglow-farm")));
+  EXPECT_FALSE(fs::exists(path("graded")));
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  EXPECT_EQ(jobs["chunks"][0]["outputs"][0], fs::canonical(path("other/graded")).string() + "/shot.0001.exr");
+  EXPECT_EQ(farm({"status", "link/../graded"}).exit_code, kDone);
+}
+
+TEST_F(FarmFiles, TheLatestJobIsTheLastOfTheSecond) {
+  std::string last;
+  for (const char* chunk : {"1", "2", "3", "4"}) {
+    const Outcome outcome = write_jobs({"--chunk", chunk});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    last = fs::path(outcome.out.substr(0, outcome.out.find('\n'))).filename().string();
+  }
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr(last + ": "));
+}
+
+/// What another scheduler has, Slurm neither waits for nor begins again.
+TEST_F(FarmFiles, JobsOfOtherSchedulersAreLeftToThem) {
+  ASSERT_EQ(write_jobs().exit_code, kDone);
+  for (const auto& [words, part] :
+       {std::pair(std::vector<std::string>{"retry", "out"}, "start what is missing where it was"),
+        {{"cancel", "out"}, "cancel it where it was"},
+        {{"status", "out", "--wait"}, "wait for it where it was"}}) {
+    const Outcome outcome = farm(words);
+    EXPECT_EQ(outcome.exit_code, kFiles) << part;
+    EXPECT_THAT(outcome.err, HasSubstr(part));
+  }
+  EXPECT_EQ(farm({"chunk", "out", "0"}).exit_code, kDone) << "by the folder of the outputs, as all words";
+}
+
 TEST_F(FarmFiles, ADryRunWritesNothing) {
   const auto before = files();
   const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/", "--chunk", "4", "--time", "10",
@@ -85,7 +121,7 @@ TEST_F(FarmFiles, ADryRunWritesNothing) {
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_EQ(files(), before);
   EXPECT_THAT(outcome.out, HasSubstr("# 10 frames in 3 chunks, each behind 3 frames of pre-roll"));
-  EXPECT_THAT(outcome.out, HasSubstr("--array=0-2 --time=10 '--comment=a b'"));
+  EXPECT_THAT(outcome.out, HasSubstr("--time=10 '--comment=a b' --array=0-2"));
   EXPECT_THAT(outcome.out, HasSubstr("farm chunk \"$job\" \"$chunk\""));
 }
 
@@ -131,10 +167,15 @@ TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   refused({"status", "out"}, kFiles, "there is no farm job");
   refused({"cancel", "nowhere"}, kFiles, "nowhere: error: there is no farm job");
   refused({"chunk", "out"}, kUsage, "chunk needs a job's folder and a number");
+  refused({"status", "out", "--frames", "1-3"}, kUsage,
+          "--frames cannot go with 'status'; allowed: --all, --wait, --report");
+  refused({"retry", "out", "--set", "glow.gain=2"}, kUsage, "--set cannot go with 'retry'");
+  refused({"cancel", "out", "-o", "one/"}, kUsage, "--output cannot go with 'cancel'; allowed: its job alone");
+  refused({"report", "out", "--", "--nice"}, kUsage, "words behind -- cannot go with 'report'");
   refused({"look.lua", "-", "-o", "out/", "--raw", "16x9:rgb24"}, kUsage, "unknown option '--raw'");
   refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--resume"}, kUsage, "unknown option '--resume'");
-  refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--", "--array=1-3"}, kUsage,
-          "the array is that of the chunks");
+  for (const char* word : {"--array=1-3", "--arr=1-3", "-a", "-a1-3"})
+    refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--", word}, kUsage, "the array is that of the chunks");
   refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "j.json", "--wait"}, kUsage,
           "--jobs submits nothing");
   refused({"look.lua", "in/none.####.exr", "-o", "out/", "--jobs", "j.json"}, kFiles, "no file matches");

@@ -84,6 +84,29 @@ TEST_F(FakeSlurm, AccountingIsAskedOnTheJobsCluster) {
   EXPECT_THAT(status.out + status.err, Not(HasSubstr("stranger")));
 }
 
+/// Wrappers and plug-ins of a site say things of their own.
+TEST_F(FakeSlurm, TheNumberOfAJobIsTheLastLineOfSbatch) {
+  const auto submit = [&] { return run({"farm", "look.lua", "in/shot.####.exr", "-o", "out/"}, with_fakes()); };
+  program("sbatch", "echo 'NOTE: down on Monday'; echo 24");
+  ASSERT_EQ(submit().exit_code, kDone);
+  EXPECT_EQ(nlohmann::json::parse(*read_file(job_of("out") / "slurm.json")).at("arrays")[0].at("id"), "24");
+  for (const char* text : {"echo 24; echo 'NOTE: down on Monday'", "true"}) {
+    program("sbatch", text);
+    const Outcome outcome = submit();
+    EXPECT_EQ(outcome.exit_code, kFiles);
+    EXPECT_THAT(outcome.err, HasSubstr("sbatch told no number of a job: '"));
+  }
+}
+
+TEST_F(FakeSlurm, RetriesAreThoseOfTheLastRetry) {
+  program("sbatch", "echo 24");
+  ASSERT_EQ(run({"farm", "look.lua", "in/shot.####.exr", "-o", "out/"}, with_fakes()).exit_code, kDone);
+  const std::string script = (job_of("out") / "task.sh").string();
+  EXPECT_THAT(*read_file(script), HasSubstr("-lt 3 ]; then"));
+  ASSERT_EQ(run({"farm", "retry", "out", "--retries", "9"}, with_fakes()).exit_code, kDone);
+  EXPECT_THAT(*read_file(script), HasSubstr("-lt 9 ]; then"));
+}
+
 TEST(FarmText, ArraysStayBelowTheLargest) {
   const auto plans = farm::array_plans({0, 1, 2, 3, 4, 5, 6, 7, 9, 14}, 4);
   ASSERT_EQ(plans.size(), 4u);

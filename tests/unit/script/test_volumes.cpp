@@ -213,7 +213,20 @@ TEST_F(Volumes, InputsThatABlendedSettingMayAskForAreNeeded) {
   scene.stack("fx.lines {}");
   EXPECT_THAT(scene.load()->needs(), IsEmpty());
   scene.stack("fx.lines {}, fx.volume { weight = 0, settings = { lines = { deep = true } } }");
-  EXPECT_THAT(scene.load()->needs(), testing::Contains("depth"));
+  EXPECT_THAT(scene.load()->needs(), IsEmpty()) << "no frame asks for it";
+  EXPECT_THAT(scene.load()->possible_needs(), testing::Contains("depth"));
+  scene.stack(
+      "fx.lines { on = true }, fx.volume { weight = function(t) return t.frame < 5 and 0 or 1 end, settings = { lines "
+      "= { deep = true } } }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset);
+  const auto asked = [&](double frame) {
+    return preset->note_needs({.size = {8, 8}, .auxiliary = {}, .frame = frame});
+  };
+  EXPECT_EQ(asked(1).value(), false);
+  EXPECT_THAT(preset->needs(), IsEmpty());
+  EXPECT_EQ(asked(5).value(), true);
+  EXPECT_THAT(preset->needs(), testing::ElementsAre("depth")) << "and nothing else";
 }
 
 TEST_F(Volumes, Messages) {
