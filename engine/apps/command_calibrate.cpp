@@ -41,6 +41,7 @@ void print(const bench::CalibrationResult& result) {
 }
 
 Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
+  keep_standard_output_for({a.out});
   const auto looks = find_installation() / "calibration";
   bench::CalibrationRequest request{
       .look = a.look, .reductions = looks / "reductions.lua", .base = {}, .size = {}, .repeat = a.repeat};

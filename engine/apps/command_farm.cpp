@@ -102,6 +102,7 @@ Result<void> run_retry(farm::Job job, const FarmArguments& a, Console& console) 
 
 Result<void> run_farm(const FarmArguments& a, Console& console) {
   AFTERGLOW_CHECK(a.check_word());
+  keep_standard_output_for({a.run.report, a.jobs});
   const std::string word = a.word();
   const auto& given = a.run.files.inputs;
   if (word.empty()) return run_submit(a, console);

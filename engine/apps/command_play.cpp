@@ -145,6 +145,7 @@ Result<void> take_settings(CLI::App& app, const PlayArguments& a) {
 
 Result<void> play_command(CLI::App& app, const PlayArguments& a, Console& console) {
   AFTERGLOW_CHECK(take_settings(app, a));
+  keep_standard_output_for({a.report});
   AFTERGLOW_TRY(const PlayerOptions options, a.player());
   AFTERGLOW_CHECK(check_written_files(a, options));
   bool reported = false;

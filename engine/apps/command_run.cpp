@@ -13,6 +13,7 @@ namespace afterglow {
 namespace {
 
 Result<void> run_run(const RunArguments& a, Console& console) {
+  keep_standard_output_for({a.report, a.files.output});
   AFTERGLOW_TRY(const BatchRequest request, a.request());
   if (a.sandbox) {
     AFTERGLOW_CHECK(make_folder(new_folder(a.files.output)));  // what it lies in is out of reach afterwards

@@ -41,13 +41,13 @@ stress::StressEvents events_of(Console& console) {
 
 /// --repeat FOLDER: the case again. Errors: other (it still fails).
 Result<void> repeat(const StressArguments& a, const stress::StressRequest& request, Console& console) {
-  AFTERGLOW_TRY(const auto repeated, stress::repeat_case(a.repeat, request, console.diagnostics()));
+  AFTERGLOW_TRY(const auto repeated, stress::repeat_case(*a.repeat, request, console.diagnostics()));
   const auto& [check, outcome] = repeated;
   if (!outcome.applies) {
     output("{}: no longer applies: the effect does not promise it for these settings\n", check);
     return {};
   }
-  if (!outcome.holds) return Error{ErrorKind::other, fmt::format("{}: {}", check, outcome.what), a.repeat};
+  if (!outcome.holds) return Error{ErrorKind::other, fmt::format("{}: {}", check, outcome.what), *a.repeat};
   output("{}: holds: {:.3g} measured, {:.3g} allowed\n", check, outcome.measured, outcome.allowed);
   return {};
 }
@@ -67,8 +67,9 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
   }
   const auto devices = a.devices.empty() ? std::vector<std::string>{"auto"} : a.devices;
   AFTERGLOW_TRY(const auto first, a.request(devices.front()));
-  if (!a.repeat.empty()) return repeat(a, first, console);
+  if (a.repeat) return repeat(a, first, console);
   if (!a.digests_of.empty()) return print_digests(a, first, console);
+  keep_standard_output_for({a.report});
   for (const auto& device : devices) {
     const SideFile report{"--report", a.report.empty() ? "" : a.report_file(device)};
     AFTERGLOW_CHECK(check_written({&report, 1}, {}, {}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/output.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,6 +11,7 @@
 namespace afterglow {
 namespace {
 
+std::FILE* g_text = stdout;  // where what people read goes
 bool g_failed = false;
 int g_reason = 0;  // errno of the first failure; 0: not known
 
@@ -18,16 +20,22 @@ void note_failure() {
   g_failed = true;
 }
 
+void write_to(std::FILE* stream, const std::string& text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() && stream == stdout) note_failure();
+}
+
 }  // namespace
 
-void output_text(const std::string& text) {
-  errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) note_failure();
+void keep_standard_output_for(std::initializer_list<std::string_view> files) {
+  if (std::ranges::find(files, "-") != files.end()) g_text = stderr;
 }
+
+void output_text(const std::string& text) { write_to(g_text, text); }
 
 Result<void> output_file(const std::string& file, const std::string& text) {
   if (file != "-") return write_file_atomically(file, text);
-  output_text(text);
+  write_to(stdout, text);
   return {};
 }
 

@@ -5,12 +5,18 @@
 
 #include <fmt/format.h>
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/result.h"
 
 namespace afterglow {
+
+/// Where one of these files is "-", standard output is for it alone: what people read goes to standard error from here
+/// on.
+void keep_standard_output_for(std::initializer_list<std::string_view> files);
 
 void output_text(const std::string& text);
 

@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -31,10 +34,10 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 /// The files that are edited, in a folder that goes with it.
 class Workplace {
  public:
-  Workplace() : folder_(fs::temp_directory_path() / fmt::format("afterglow-reload-{}", getpid())) {}
+  Workplace() = default;
   ~Workplace() {
     std::error_code ignored;
-    fs::remove_all(folder_, ignored);
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
   }
   Workplace(const Workplace&) = delete;
   Workplace& operator=(const Workplace&) = delete;
@@ -43,6 +46,10 @@ class Workplace {
 
   Result<void> make(const ReloadBenchOptions& options, Diagnostics& diagnostics) {
     std::error_code problem;
+    std::string name = (fs::temp_directory_path() / "afterglow-reload-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+      return Error{ErrorKind::io, fmt::format("cannot be made: {}", std::strerror(errno)), name};
+    folder_ = name;
     for (const char* folder : {"effects", "shaders/edited", "cache"}) fs::create_directories(folder_ / folder, problem);
     if (problem) return Error{ErrorKind::io, "cannot be made: " + problem.message(), folder_.string()};
     fs::copy_file(options.preset, path("measured.lua"), fs::copy_options::overwrite_existing, problem);

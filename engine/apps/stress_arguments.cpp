@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/ascii.h"
 #include "core/paths.h"
+#include "core/utf8.h"
 
 namespace afterglow {
 namespace {
@@ -73,8 +75,16 @@ Result<stress::StressRequest> StressArguments::request(const std::string& name) 
   DeviceArguments asked = device;
   asked.device = name;
   AFTERGLOW_TRY(out.device, asked.options());
-  if (!duration.empty()) {
-    AFTERGLOW_TRY(out.seconds, parse_duration(duration));
+  if (duration) {
+    AFTERGLOW_TRY(out.seconds, parse_duration(*duration));
+  }
+  std::vector<std::string> named = presets;
+  std::ranges::copy(preset.paths, std::back_inserter(named));
+  named.push_back(folder);
+  for (const auto& path : named) {
+    const std::string whole = std::filesystem::absolute(path).string();
+    if (utf8_text(whole) != whole)
+      return Error{ErrorKind::usage, "names must be UTF-8, for cases to be repeated by them", whole};
   }
   return out;
 }

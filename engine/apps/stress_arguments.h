@@ -18,7 +18,8 @@ struct StressArguments {
   DeviceArguments device;  // --validate alone
   std::uint64_t seed = 1, cases = 0;
   std::optional<std::uint64_t> trial;
-  std::string duration, report, folder = "stress", repeat;
+  std::optional<std::string> duration, repeat;
+  std::string report, folder = "stress";
   std::vector<std::string> digests_of;
   bool quick = false, list = false;
 

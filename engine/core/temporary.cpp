@@ -76,7 +76,15 @@ void remember(unsigned count, const std::string& path) {
   given.whole = true;
 }
 
-bool lives(pid_t process) { return kill(process, 0) == 0 || errno != ESRCH; }
+/// One that was killed and that nobody has asked after (a zombie) does not: in a container it may stay so for ever.
+bool lives(pid_t process) {
+  if (kill(process, 0) != 0 && errno == ESRCH) return false;
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string line;
+  std::getline(file, line);
+  const std::size_t state = line.rfind(')') + 2;  // npos + 2 is 1
+  return line.size() <= state || (line[state] != 'Z' && line[state] != 'X');
+}
 
 /// By the open file: a confined process may not by its name (core/confine_calls.h).
 void give_mode(const fs::path& path, fs::perms mode) {

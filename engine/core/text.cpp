@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/printable.h"
+#include "core/utf8.h"
 
 namespace afterglow {
 namespace {
@@ -113,7 +114,7 @@ std::string lower(std::string_view text) {
 
 std::string markup_text(std::string_view text) {
   std::string out;
-  for (const char c : printable(std::string(text), true))
+  for (const char c : printable(utf8_text(std::string(text)), true))
     if (c == '&')
       out += "&amp;";
     else if (c == '<')

@@ -190,7 +190,8 @@ std::string task_script(const Job& job) {
 # Made by `afterglow farm`. A task of the array makes one chunk of frames; that of task 0 is the first argument.
 job={}
 chunk=$(($1 + SLURM_ARRAY_TASK_ID))
-exec >>"$job/logs/$chunk.log" 2>&1
+# Without a log the chunk is made all the same: `command` keeps the shell from ending here.
+command exec >>"$job/logs/$chunk.log" 2>&1
 {} farm chunk "$job" "$chunk"
 code=$?
 # Behind the last chunk a video is joined, once all are done: trying again brings none of them back.

@@ -91,7 +91,7 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       facts.primaries = Chromaticities{xy(1), xy(2), xy(3), xy(0)};
     }
     AFTERGLOW_CHECK(check_sum(file, in, at, length));
-    if (const char* why = png_metadata_fault(type, in, at + 8, length, facts.profile)) return malformed(file, why);
+    if (const char* why = png_metadata_fault(type, in, at + 8, length, facts)) return malformed(file, why);
     if (type == "IEND") return facts;
     at += 12 + length;
   }
@@ -147,12 +147,15 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   ContainerFacts facts;
   if (is_exr(file)) facts.kind = ContainerFacts::Kind::exr;
   std::optional<ClaimedSize> claimed = claimed_size(head);
-  if (format == "dpx") AFTERGLOW_CHECK(check_dpx(file, in, size));
+  if (format == "dpx") {
+    AFTERGLOW_TRY(facts.line_padding, check_dpx(file, in, size));
+    if (facts.line_padding > 0) facts.decoder_bytes = size;  // it is read with another header
+  }
   if (format == "cineon") AFTERGLOW_CHECK(check_cineon(file, in, size));
   if (format == "sgi") AFTERGLOW_CHECK(check_sgi(file, in, size));
   if (format == "gif") AFTERGLOW_CHECK(check_gif(file, in, size));
   if (format == "webp") {
-    AFTERGLOW_TRY(facts.profile, check_webp(file, in, size));
+    AFTERGLOW_CHECK(check_webp(file, in, size, facts));
   }
   if (format == "tiff") AFTERGLOW_CHECK(check_tiff(file, in, size));
   if (format == "targa") {

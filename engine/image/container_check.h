@@ -22,8 +22,9 @@ struct ContainerFacts {
   std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
   bool fourth_is_padding = false;           ///< BMP, Targa: the fourth byte of a pixel means nothing
   std::optional<DeepPnm> deep_pnm;          ///< PNM with another largest value than 255
+  std::uint32_t line_padding = 0;           ///< DPX: bytes behind each line that its header does not tell of
   double exposure = 1;                      ///< Radiance: what the light was multiplied by
-  std::optional<int> orientation;           ///< Radiance: as Exif has it, where the library is wrong
+  std::optional<int> orientation;           ///< Radiance, WebP, PNG: as Exif has it, where the library may not find it
   bool srgb = false;                        ///< PNG sRGB chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
   std::optional<Chromaticities> primaries;  ///< PNG cHRM

@@ -13,4 +13,7 @@ namespace afterglow {
 /// has none: the same picture is the same bytes. (SMPTE 268M, file information header.)
 void set_dpx_name_and_time(const Picture& picture, const std::string& name, OutputFile& out);
 
+/// Lines of whole words of 32 bits, as the standard has them, where the library has put line to line.
+void pad_dpx_lines(OutputFile& out);
+
 }  // namespace afterglow

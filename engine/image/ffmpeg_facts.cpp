@@ -160,6 +160,7 @@ MovieFacts facts_of(FfmpegInput& input, const AVFrame& first) {
   facts.color = color_of(first, stream.codecpar->codec_id);
   use_aspect(input, first, facts);
   if (const std::int32_t* matrix = matrix_of(first, stream)) use_display_matrix(matrix, facts);
+  facts.leaves_alpha = input.leaves_alpha();
   return facts;
 }
 

@@ -3,6 +3,7 @@
 
 extern "C" {
 #include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
 }
 
 #include <fmt/format.h>
@@ -105,6 +106,30 @@ Result<void> FfmpegInput::open_container(const std::string& format, const std::s
   return {};
 }
 
+/// AVIF and HEIF with a track of pictures: another track of theirs is the alpha of the first.
+bool FfmpegInput::is_picture_sequence() const {
+  const AVDictionaryEntry* brand = av_dict_get(container_->metadata, "major_brand", nullptr, 0);
+  return brand && (std::strcmp(brand->value, "avis") == 0 || std::strcmp(brand->value, "msf1") == 0);
+}
+
+int FfmpegInput::first_pictures() const {
+  for (unsigned i = 0; i < container_->nb_streams; ++i)
+    if (container_->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO) return static_cast<int>(i);
+  return -1;
+}
+
+bool FfmpegInput::leaves_alpha() const {
+  if (!is_picture_sequence()) return false;
+  for (unsigned i = 0; i < container_->nb_streams; ++i) {
+    const AVCodecParameters& other = *container_->streams[i]->codecpar;
+    const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(other.format));
+    if (static_cast<int>(i) != stream_ && other.codec_type == AVMEDIA_TYPE_VIDEO && format &&
+        format->nb_components == 1)
+      return true;
+  }
+  return false;
+}
+
 Result<void> FfmpegInput::choose_stream() {
   // The best is chosen twice: most containers name their streams first, others must be looked into.
   for (unsigned i = 0; i < container_->nb_streams; ++i)
@@ -113,7 +138,8 @@ Result<void> FfmpegInput::choose_stream() {
   if (const int found = avformat_find_stream_info(container_, nullptr); found < 0)
     return failed("is no video that can be read: " + ffmpeg_error(found));
   if (bytes_->given_up()) return failed("");
-  stream_ = av_find_best_stream(container_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  stream_ = is_picture_sequence() ? first_pictures()
+                                  : av_find_best_stream(container_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (stream_ < 0) return failed("holds no video stream");
   for (unsigned i = 0; i < container_->nb_streams; ++i)
     container_->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;

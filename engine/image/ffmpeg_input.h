@@ -44,6 +44,8 @@ class FfmpegInput {
   std::optional<Error> given_up() const;
   /// Once the end has come: it came within something.
   bool ends_early();
+  /// Its pictures have an alpha in a track of its own, which is not read.
+  bool leaves_alpha() const;
 
  private:
   FfmpegInput() = default;
@@ -51,6 +53,8 @@ class FfmpegInput {
                                                    const std::string& format, const SizeLimits& limits,
                                                    const std::string& options);
   Result<void> open_container(const std::string& format, const std::string& options);
+  bool is_picture_sequence() const;
+  int first_pictures() const;
   Result<void> choose_stream();
   Error failed(const std::string& why) const;
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "image/ffmpeg_video_file.h"
 
+extern "C" {
+#include <libavutil/opt.h>
+}
+
 #include <algorithm>
 #include <limits>
 
@@ -82,14 +86,32 @@ Result<void> FfmpegVideoFile::write_head() {
 Result<void> FfmpegVideoFile::write(AVPacket& packet) {
   const AVRational clock = rational(plan_.time_base);
   if (copy_) AFTERGLOW_CHECK(copy_->copy(av_rescale_q(packet.dts, clock, kCopyClock)));
+  last_ = std::max(last_, packet.pts);
   av_packet_rescale_ts(&packet, clock, stream_->time_base);
   packet.stream_index = stream_->index;
   return output_->write(packet);
 }
 
+/// The muxers of GIF and APNG repeat the length before the last one, unless they are told.
+void FfmpegVideoFile::say_last_length(std::int64_t ticks) {
+  constexpr int kLargest = 65535;
+  const AVRational clock = rational(plan_.time_base);
+  void* const muxer = output_->container().priv_data;
+  if (plan_.container == "gif") {
+    const std::int64_t hundredths = av_rescale_q(ticks, clock, {1, 100});
+    av_opt_set_int(muxer, "final_delay", std::clamp<std::int64_t>(hundredths, 0, kLargest), 0);
+  }
+  if (plan_.container == "apng") {
+    AVRational length{};
+    av_reduce(&length.num, &length.den, ticks * clock.num, clock.den, kLargest);
+    av_opt_set_q(muxer, "final_delay", length, 0);
+  }
+}
+
 Result<void> FfmpegVideoFile::finish(bool whole, std::int64_t end) {
   const std::int64_t until = av_rescale_q(end, rational(plan_.time_base), kCopyClock);
   if (copy_) AFTERGLOW_CHECK(copy_->copy(whole ? std::numeric_limits<std::int64_t>::max() : until));
+  say_last_length(end - last_);
   return output_->finish();
 }
 

@@ -41,11 +41,13 @@ class FfmpegVideoFile {
   Result<void> add_copies(const std::string& name, Diagnostics& diagnostics);
   void add_time_code();
   Result<void> write_head();
+  void say_last_length(std::int64_t ticks);
 
   const VideoPlan& plan_;
   std::unique_ptr<FfmpegOutput> output_;
   std::unique_ptr<FfmpegCopy> copy_;
   AVStream* stream_ = nullptr;
+  std::int64_t last_ = 0;  ///< when the last frame is shown, in ticks of the plan
 };
 
 }  // namespace afterglow

@@ -60,7 +60,7 @@ std::optional<std::uint32_t> dpx_channels(std::uint32_t descriptor) {
 
 }  // namespace
 
-Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
+Result<std::uint32_t> check_dpx(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
   constexpr std::size_t kElement = 780;
   const FilmHeader header(in, kElement + 72, 'S');
   if (!header.whole()) return malformed(file, "is truncated");
@@ -70,7 +70,7 @@ Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std
   const std::uint32_t width = header.number(772, 4), lines = header.number(776, 4);
   const std::uint32_t bits = header.number(kElement + 23, 1), packing = header.number(kElement + 24, 2);
   const auto channels = dpx_channels(header.number(kElement + 20, 1));
-  if (width > kMostSide || lines > kMostSide) return {};  // refused for its size
+  if (width > kMostSide || lines > kMostSide) return 0u;  // refused for its size
   if (!channels || width == 0 || lines == 0 || packing > 2) return malformed(file, kMalformed);
   const std::uint64_t samples = std::uint64_t{width} * *channels;
   std::uint64_t line = samples * bits / 8;
@@ -88,7 +88,12 @@ Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std
   }
   const bool runs = header.number(kElement + 26, 2) == 1;
   if (runs) return malformed(file, "is a run-length encoded DPX, which is not supported");
-  return check_pixels(file, size, header.number(kElement + 28, 4), lines, line, header.number(kElement + 32, 4));
+  const std::uint32_t offset = header.number(kElement + 28, 4), padding = header.number(kElement + 32, 4);
+  AFTERGLOW_CHECK(check_pixels(file, size, offset, lines, line, padding));
+  // Lines begin at words of 32 bits, which the reader does not know, and few writers tell of.
+  const std::uint64_t words = (line + 3) / 4 * 4;
+  const bool told = padding != 0 && padding != kUndefined;
+  return !told && offset + lines * words <= size ? static_cast<std::uint32_t>(words - line) : 0u;
 }
 
 Result<void> check_cineon(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {

@@ -10,8 +10,9 @@
 
 namespace afterglow {
 
-/// Errors: io (malformed, truncated, or a variant that is not read right).
-Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
+/// Bytes behind each line that the header does not tell of. Errors: io (malformed, truncated, or a variant that is not
+/// read right).
+Result<std::uint32_t> check_dpx(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
 Result<void> check_cineon(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size);
 
 }  // namespace afterglow

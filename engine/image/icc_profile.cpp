@@ -104,6 +104,25 @@ Profile linear_rec709(cmsContext context) {
   return profile;
 }
 
+/// Of grey by anything but a curve of light: a table, or a curve of lightness (L*), as profiles that meet in Lab have.
+Result<void> use_grey_transform(cmsContext context, cmsHPROFILE profile, ColorEncoding& encoding) {
+  const Profile target = linear_rec709(context);
+  if (!target) return refused("has an ICC profile for which there is no memory");
+  const Transform transform(cmsCreateTransformTHR(context, profile, TYPE_GRAY_FLT, target.get(), TYPE_RGB_FLT,
+                                                  INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE));
+  if (!transform) return refused("has an ICC profile that cannot be used");
+  encoding.curve = TransferCurve::tables;
+  for (auto& table : encoding.tables) table.resize(static_cast<std::size_t>(encoding.max_code) + 1);
+  const std::size_t codes = encoding.tables[0].size();
+  std::vector<float> grey(codes), rgb(3 * codes);
+  for (std::size_t code = 0; code < codes; ++code)
+    grey[code] = static_cast<float>(code) / static_cast<float>(encoding.max_code);
+  cmsDoTransform(transform.get(), grey.data(), rgb.data(), static_cast<cmsUInt32Number>(codes));
+  for (std::size_t i = 0; i < rgb.size(); ++i) encoding.tables[i % 3][i / 3] = rgb[i];
+  encoding.matrix.reset();
+  return {};
+}
+
 }  // namespace
 
 Result<void> use_icc_profile(std::span<const std::uint8_t> bytes, int channels, ColorEncoding& encoding) {
@@ -115,9 +134,12 @@ Result<void> use_icc_profile(std::span<const std::uint8_t> bytes, int channels, 
   const cmsColorSpaceSignature space = cmsGetColorSpace(profile.get());
   if (space == cmsSigGrayData) {
     if (channels != 1) return refused("has an ICC profile for grey pictures, but is in colour");
+    if (encoding.max_code == 0) return refused("has an ICC profile for grey floating-point samples");
+    const bool by_table = cmsIsTag(profile.get(), cmsSigAToB0Tag) || cmsIsTag(profile.get(), cmsSigAToB1Tag);
+    if (by_table || cmsGetPCS(profile.get()) == cmsSigLabData)
+      return use_grey_transform(context.get(), profile.get(), encoding);
     const cmsToneCurve* curve = curve_of(profile.get(), cmsSigGrayTRCTag);
     if (!curve) return refused("has an ICC profile without a curve");
-    if (encoding.max_code == 0) return refused("has an ICC profile for grey floating-point samples");
     use_curves({curve, curve, curve}, kIdentity, encoding);
     return {};
   }

@@ -87,6 +87,25 @@ const char* exif_fault(Bytes exif) {
   return Exif(exif).sound() ? nullptr : kExif;
 }
 
+std::optional<int> exif_orientation(Bytes exif) {
+  constexpr std::uint32_t kTag = 0x0112, kShort = 3;
+  if (text_of(exif).starts_with(std::string_view("Exif\0\0", 6))) exif = exif.subspan(6);
+  if (exif.size() < 8) return std::nullopt;
+  const std::string_view order = text_of(exif).substr(0, 2);
+  if (order != "II" && order != "MM") return std::nullopt;
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    return static_cast<std::uint32_t>(ordered(&exif[at], bytes, order == "MM"));
+  };
+  const std::uint64_t first = number(4, 4);
+  if (first + 2 > exif.size()) return std::nullopt;
+  for (std::uint64_t i = 0, entry = first + 2; i < number(first, 2) && entry + 12 <= exif.size(); ++i, entry += 12) {
+    if (number(entry, 2) != kTag || number(entry + 2, 2) != kShort) continue;
+    const std::uint32_t value = number(entry + 8, 2);
+    return value >= 1 && value <= 8 ? std::optional(static_cast<int>(value)) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 const char* icc_fault(Bytes profile) {
   constexpr std::size_t kHeader = 128, kEntry = 12, kRecord = 12;
   if (profile.size() < kHeader + 4 || text_of(profile).substr(36, 4) != "acsp") return nullptr;

@@ -3,6 +3,7 @@
 // says what is wrong, or null. What it leaves out with a word of its own is not wrong here. Internal to the room.
 #pragma once
 
+#include <optional>
 #include <span>
 
 namespace afterglow {
@@ -11,6 +12,8 @@ using Bytes = std::span<const unsigned char>;
 
 /// From the TIFF header on, or from the "Exif\0\0" before it.
 const char* exif_fault(Bytes exif);
+/// The orientation that it says, 1 to 8. None: it says none, or another number.
+std::optional<int> exif_orientation(Bytes exif);
 /// A whole profile.
 const char* icc_fault(Bytes profile);
 /// A text that may hold rdf:Description elements.

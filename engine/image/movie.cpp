@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "image/container_check.h"
+#include "image/container_color.h"
 #include "image/ffmpeg_module.h"
 #include "image/movie_color.h"
 #include "image/oiio_module.h"
@@ -25,7 +27,7 @@ class MovieFrameFile : public PictureFile {
     part.data_window = part.display_window = {0, 0, facts.size.width, facts.size.height};
     part.channels = {"R", "G", "B"};
     if (facts.has_alpha) part.channels.emplace_back("A");
-    part.orientation = facts.orientation;
+    part.orientation = movie_->container_ ? movie_->container_->orientation.value_or(1) : facts.orientation;
     parts_.push_back(std::move(part));
   }
 
@@ -57,8 +59,15 @@ class MovieFrameFile : public PictureFile {
     return false;
   }
 
-  ColorEncoding color_encoding(const ChannelChoice&, Diagnostics&) const override {
-    return movie_encoding(movie_->facts());
+  ColorEncoding color_encoding(const ChannelChoice&, Diagnostics& diagnostics) const override {
+    ColorEncoding encoding = movie_encoding(movie_->facts());
+    const auto& container = movie_->container_;
+    if (!container) return encoding;
+    encoding.dense = false;
+    encoding.grey = movie_->facts().grey;
+    encoding.max_code = (1 << movie_->facts().bits) - 1;
+    use_container_color(*container, container->profile, path_.string(), encoding, diagnostics);
+    return encoding;
   }
 
   FileFacts facts(const ChannelChoice& color) const override {
@@ -68,7 +77,7 @@ class MovieFrameFile : public PictureFile {
     facts.format = format_;
     facts.bits = movie.bits;
     facts.floating = movie.floating;
-    facts.orientation = movie.orientation;
+    facts.orientation = parts_.front().orientation;
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
         facts.color_channels[i] = parts_.front().channels[static_cast<std::size_t>(color.channels[i])];
@@ -116,6 +125,8 @@ void tell(const Movie& movie, Diagnostics& diagnostics) {
   for (const std::string& note : facts.notes) diagnostics.note(fmt::format("{}: {}", name, note));
   if (facts.interlaced)
     diagnostics.warn(fmt::format("{}: is interlaced; its frames are read with both fields in them", name));
+  if (facts.leaves_alpha)
+    diagnostics.warn(fmt::format("{}: its alpha is in a track of its own, which is not read", name));
   if (facts.turned != 0)
     diagnostics.warn(fmt::format("{}: asks to be turned by {:.4g} degrees, which is not done", name, facts.turned));
   if (facts.missing > 0) {
@@ -143,7 +154,11 @@ Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, co
   std::shared_ptr<Movie> movie(new Movie());
   movie->file_ = file;
   AFTERGLOW_TRY(const Patience patience, patience_of_process());
-  AFTERGLOW_TRY(movie->source_, open_source({file, movie_format(file), limits, patience}));
+  const std::string format = movie_format(file);
+  AFTERGLOW_TRY(movie->source_, open_source({file, format, limits, patience}));
+  if (format == "apng")
+    if (auto container = check_container(file))  // one that is cut off is told of, and taken for sRGB
+      movie->container_ = std::make_shared<const ContainerFacts>(*std::move(container));
   tell(*movie, diagnostics);
   return movie;
 }

@@ -17,6 +17,8 @@
 
 namespace afterglow {
 
+struct ContainerFacts;  // image/container_check.h
+
 /// Thread-safe. Frames in order are cheap; others are decoded from the key frame before them.
 class Movie {
  public:
@@ -45,6 +47,7 @@ class Movie {
   Movie() = default;
   std::filesystem::path file_;
   std::shared_ptr<MovieSource> source_;
+  std::shared_ptr<const ContainerFacts> container_;  ///< of a PNG that moves: of its colours FFmpeg says nothing
   friend class MovieFrameFile;
 };
 

@@ -88,6 +88,13 @@ void use_transfer(ColorEncoding& encoding, int code) {
 bool is_known_transfer(int code) { return (code >= 4 && code <= 18) || code == 1; }
 bool is_known_matrix(int code) { return code == 1 || (code >= 4 && code <= 10) || code == 14; }
 
+/// The primaries that go with a matrix alone; BT.601's goes with several. None: it tells nothing.
+std::optional<int> primaries_with(int matrix) {
+  if (matrix == 1) return 1;
+  if (matrix == 9 || matrix == 10) return 9;
+  return std::nullopt;
+}
+
 bool is_small(const Size& size) {
   constexpr int kSdWidth = 1024, kSdHeight = 576;
   return size.width <= kSdWidth && size.height <= kSdHeight;
@@ -110,16 +117,21 @@ void fill_in(MovieFacts& facts) {
   };
   if (!color.rgb && !facts.grey) {
     if (color.matrix == 0) color.matrix = kUnsaid;  // RGB's: not of what is stored
-    take(color.matrix, is_known_matrix(color.matrix), small || color.picture ? (sixty ? 6 : 5) : 1, "matrix");
+    const int by_size = small || color.picture ? (sixty ? 6 : 5) : 1;
+    take(color.matrix, is_known_matrix(color.matrix), color.primaries == 9 ? 9 : by_size, "matrix");
   }
+  const bool matrix_said = !facts.grey && taken.empty();
+  const auto with_matrix = matrix_said ? primaries_with(color.matrix) : std::nullopt;
   const bool primaries_said = color.primaries == 1 || primaries_of(color.primaries).has_value();
-  take(color.primaries, primaries_said, srgb || !small ? 1 : sixty ? 6 : 5, "primaries");
+  take(color.primaries, primaries_said, srgb ? 1 : with_matrix.value_or(!small ? 1 : sixty ? 6 : 5), "primaries");
   take(color.transfer, is_known_transfer(color.transfer), srgb ? 13 : 1, "transfer");
+  const bool wide = color.primaries == 9;
   if (!taken.empty())
     facts.notes.push_back(fmt::format("does not say its {}; {} is taken", join(taken, ", "),
-                                      srgb    ? "sRGB"
-                                      : small ? "BT.601, as of standard definition,"
-                                              : "BT.709"));
+                                      srgb                            ? "sRGB"
+                                      : wide                          ? "BT.2020, as the rest,"
+                                      : small && color.primaries != 1 ? "BT.601, as of standard definition,"
+                                                                      : "BT.709"));
 }
 
 bool use_codes(int primaries, int transfer, ColorEncoding& encoding) {

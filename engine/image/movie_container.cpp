@@ -10,6 +10,7 @@
 
 #include "image/container_bytes.h"
 #include "image/file_signature.h"
+#include "image/still_brands.h"
 
 namespace afterglow {
 namespace {
@@ -33,33 +34,6 @@ constexpr std::array kMovieSignatures{
     FileSignature{0, "nut/multimedia container\0"sv, "nut"},
     FileSignature{0, "YUV4MPEG2"sv, "yuv4mpegpipe"},
 };
-
-/// Pictures whose files are boxes too.
-bool is_still(std::string_view brand) {
-  for (const std::string_view still :
-       {"avif"sv, "avci"sv, "heic"sv, "heix"sv, "heim"sv, "heis"sv, "mif1"sv, "mif2"sv, "jxl "sv, "jp2 "sv, "crx "sv})
-    if (brand == still) return true;
-  return false;
-}
-
-/// Sequences of such pictures, and videos whose files say that they hold one picture besides.
-bool is_moving(std::string_view brand) {
-  for (const std::string_view moving : {"avis"sv, "msf1"sv, "hevc"sv, "hevx"sv, "iso"sv, "mp4"sv, "qt"sv, "M4V"sv})
-    if (brand.starts_with(moving)) return true;
-  return false;
-}
-
-/// By the brands of the first box, ISO/IEC 14496-12, 4.3: the one it is made for, or one that it is compatible with.
-bool holds_still(std::string_view head) {
-  constexpr std::size_t kMajor = 8, kCompatible = 16, kBrand = 4;
-  if (head.size() < kMajor + kBrand || head.substr(4, 4) != "ftyp") return false;
-  const std::size_t size = big_endian(reinterpret_cast<const unsigned char*>(head.data()), 4);
-  const std::string_view major = head.substr(kMajor, kBrand);
-  if (is_still(major) || is_moving(major)) return is_still(major);
-  for (std::size_t at = kCompatible; at + kBrand <= std::min(size, head.size()); at += kBrand)
-    if (is_still(head.substr(at, kBrand))) return true;
-  return false;
-}
 
 /// Transport streams have no name, but a mark at the start of every packet; those of Blu-ray discs four bytes further.
 bool is_transport_stream(std::string_view head) {
@@ -137,7 +111,7 @@ std::string movie_format(const std::filesystem::path& file) {
   const std::string_view head(bytes.data(), static_cast<std::size_t>(in.gcount()));
   in.clear();
   if (const auto format = format_by_signature(kMovieSignatures, head); !format.empty()) {
-    return holds_still(head) ? "" : std::string(format);
+    return still_of(head) != Still::none ? "" : std::string(format);
   }
   if (head.starts_with("GIF8"sv)) return gif_moves(in) ? "gif" : "";
   if (head.starts_with("\x89PNG"sv)) return png_moves(in) ? "apng" : "";

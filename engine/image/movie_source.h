@@ -57,6 +57,7 @@ struct MovieFacts {
   long long last_length = 0;   ///< how long the last frame shows, in the same unit; 0: the file does not say
   std::size_t missing = 0;     ///< so many at the end are not there: the file is shorter than it says
   std::string time_code;       ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
+  bool leaves_alpha = false;   ///< an alpha that is not read
   std::vector<std::string> notes;  ///< what people may want to know
 };
 

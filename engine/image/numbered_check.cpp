@@ -148,7 +148,7 @@ Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, 
   }
   if (packing != kRuns8 && packing != kRuns4) return std::optional<ClaimedSize>();
   if (bits != 8 && bits != 4) return malformed(file, "is damaged: only pictures of 4 or 8 bits are packed so");
-  return std::optional(ClaimedSize{{side(18), side(22)}, 1});
+  return std::optional(ClaimedSize{{side(18), side(22)}, 3});  // it is unpacked (unpack_bmp.h)
 }
 
 bool pads_targa(std::ifstream& in, std::uint64_t size) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/oiio_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -9,13 +10,15 @@
 #include <utility>
 
 #include "core/exception.h"
+#include "core/file.h"
 #include "core/saturated.h"
 #include "core/text.h"
+#include "image/container_color.h"
 #include "image/heif_check.h"
-#include "image/icc_profile.h"
 #include "image/input_space.h"
-#include "image/movie_color.h"
 #include "image/oiio_metadata.h"
+#include "image/read_webp.h"
+#include "image/unpack_bmp.h"
 
 namespace afterglow {
 namespace {
@@ -46,6 +49,12 @@ class OiioFile : public PictureFile {
   Result<void> open(const std::string& format, const SizeLimits& limits) {
     try {
       if (format == "heif") AFTERGLOW_CHECK(check_heif(path_, container_));
+      if (format == "bmp") {
+        AFTERGLOW_TRY(in_place_, unpack_bmp(path_, limits.max_bytes));
+      }
+      if (container_.line_padding > 0) {
+        AFTERGLOW_TRY(in_place_, with_line_padding(limits.max_bytes));
+      }
       AFTERGLOW_CHECK(open_input(format));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
@@ -89,7 +98,7 @@ class OiioFile : public PictureFile {
     encoding.grey = color.channels[0] == color.channels[1];
     // OpenImageIO says nothing of these, which hold straight colours (JPEG 2000: where that is asked for).
     const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || format_ == "jpeg2000" ||
-                          format_ == "dpx" || format_ == "bmp" || format_ == "sgi";
+                          format_ == "dpx" || format_ == "bmp" || format_ == "sgi" || format_ == "webp";
     if (color.channels[3] >= 0) encoding.alpha = straight ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();
@@ -99,19 +108,13 @@ class OiioFile : public PictureFile {
       encoding.max_code = type.size() == 1 ? 255 : 65535;
     encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
     encoding.gain = 1 / container_.exposure;
-    const bool png = container_.kind == ContainerFacts::Kind::png;
-    const auto& codes = container_.codes;
-    const bool whole = png && codes && codes->primaries != kUnsaid && codes->transfer != kUnsaid;
-    if (whole && use_numbers(encoding, diagnostics)) return encoding;  // before iCCP, as PNG has it
-    if (use_profile(spec, encoding, diagnostics)) return encoding;
-    if (png) {
-      use_png_chunks(encoding, diagnostics);
-      if (codes && !whole) use_numbers(encoding, diagnostics);  // what they say
-    } else if (codes) {
-      use_numbers(encoding, diagnostics);
-    } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
+    const OIIO::ParamValue* passed = spec.find_attribute("ICCProfile");
+    std::span<const std::uint8_t> profile = container_.profile;
+    if (passed)
+      profile = {static_cast<const std::uint8_t*>(passed->data()), static_cast<std::size_t>(passed->type().size())};
+    const bool said = use_container_color(container_, profile, path_.string(), encoding, diagnostics);
+    if (!said && integer && format_ != "pnm")  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
-    }
     return encoding;
   }
 
@@ -142,8 +145,24 @@ class OiioFile : public PictureFile {
     wanted.attribute("bmp:monochrome_detect", 0);   // grey ones that are packed are written beyond a line else
     input_ = OIIO::ImageInput::create(format);
     if (!input_) return failed(message_of(OIIO::geterror()));
+    if (in_place_) {
+      memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(in_place_->data(), in_place_->size());
+      input_->set_ioproxy(memory_.get());
+    }
     if (!input_->open(path_.string(), found, wanted)) return failed(message_of(input_->geterror()));
     return {};
+  }
+
+  /// A DPX whose header tells of the bytes behind its lines.
+  Result<std::vector<std::uint8_t>> with_line_padding(std::size_t most) const {
+    constexpr std::size_t kEndOfLinePadding = 812;
+    AFTERGLOW_TRY(const std::string text, read_file(path_, most));
+    std::vector<std::uint8_t> bytes(text.begin(), text.end());
+    if (bytes.size() < kEndOfLinePadding + 4) return failed("is truncated");
+    const bool big = bytes[0] == 'S';
+    for (std::size_t i = 0; i < 4; ++i) bytes[kEndOfLinePadding + i] = 0;
+    bytes[kEndOfLinePadding + (big ? 3 : 0)] = static_cast<std::uint8_t>(container_.line_padding);  // below 4
+    return bytes;
   }
 
   Result<void> add_parts(const SizeLimits& limits) {
@@ -192,6 +211,7 @@ class OiioFile : public PictureFile {
     const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
     const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
     if (container_.deep_pnm) return read_pnm(first, channels);
+    if (format_ == "webp" && spec.nchannels == 4) return read_straight_webp(first, channels);
     // Looking for further pages of a TIFF leaves its reader in a state in which it keeps silent when a disk fails.
     if (format_ == "tiff" && !std::exchange(opened_for_pixels_, true)) AFTERGLOW_CHECK(open_input(format_));
     static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
@@ -233,53 +253,15 @@ class OiioFile : public PictureFile {
     return {};
   }
 
-  bool use_profile(const OIIO::ImageSpec& spec, ColorEncoding& encoding, Diagnostics& diagnostics) const {
-    const OIIO::ParamValue* passed = spec.find_attribute("ICCProfile");
-    std::span<const std::uint8_t> profile = container_.profile;
-    if (passed)
-      profile = {static_cast<const std::uint8_t*>(passed->data()), static_cast<std::size_t>(passed->type().size())};
-    if (profile.empty()) return false;
-    const auto used = use_icc_profile(profile, encoding.grey ? 1 : 3, encoding);
-    if (!used) diagnostics.warn(fmt::format("{}: {}; the profile is ignored", path_.string(), used.error().message));
-    return used.ok();
-  }
-
-  /// Numbers of H.273. False: they have no meaning here.
-  bool use_numbers(ColorEncoding& encoding, Diagnostics& diagnostics) const {
-    const auto& [primaries, transfer, limited] = *container_.codes;
-    const bool used = use_codes(primaries, transfer, encoding);
-    if (!used)
-      diagnostics.warn(
-          fmt::format("{}: its colours (primaries {}, transfer {} of H.273) are not known; they are ignored",
-                      path_.string(), primaries, transfer));
-    if (limited)
-      diagnostics.warn(fmt::format("{}: says that its samples have the range of video; they are read as of full range",
-                                   path_.string()));
-    return used;
-  }
-
-  /// PNG's own rules: iCCP before sRGB before gAMA and cHRM.
-  void use_png_chunks(ColorEncoding& encoding, Diagnostics& diagnostics) const {
-    if (container_.srgb) return;
-    if (container_.gamma) {
-      // What programs write that mean sRGB but do not know the sRGB chunk (PNG, 11.3.2.5); other numbers mean what they
-      // say.
-      constexpr double kSrgb = 0.45455;
-      const double exponent = 1 / *container_.gamma;
-      if (std::abs(exponent - 1) < 0.01) {
-        encoding.curve = TransferCurve::linear;
-      } else if (std::abs(*container_.gamma - kSrgb) > 1e-5 && exponent > 0.1 && exponent < 10) {
-        encoding.curve = TransferCurve::power;
-        encoding.exponent = exponent;
-      }
-    }
-    if (!container_.primaries || encoding.grey) return;
-    const Matrix3 matrix = to_rec709(*container_.primaries);
-    if (matrix == Matrix3{}) {
-      diagnostics.warn(fmt::format("{}: its chromaticities make no sense; Rec.709 is assumed", path_.string()));
-    } else if (!nearly_equal(matrix, kIdentity, 3e-3)) {
-      encoding.matrix = matrix;
-    }
+  Result<void> read_straight_webp(const ReadTarget& first, int channels) const {
+    const OIIO::ImageSpec& spec = specs_.front();
+    AFTERGLOW_TRY(const std::vector<std::uint8_t> codes, read_webp(path_, {spec.width, spec.height}));
+    for (std::size_t y = 0, i = 0; y < static_cast<std::size_t>(spec.height); ++y)
+      for (std::size_t x = 0; x < static_cast<std::size_t>(spec.width); ++x, i += 4)
+        for (int c = 0; c < channels; ++c)
+          first.base[y * first.row_stride + x * first.pixel_stride + static_cast<std::size_t>(c)] =
+              static_cast<float>(codes[i + static_cast<std::size_t>(first.channel + c)]) / 255;
+    return {};
   }
 
   void use_color_space(const std::string& name, ColorEncoding& encoding, Diagnostics& diagnostics) const {
@@ -302,6 +284,8 @@ class OiioFile : public PictureFile {
   }
 
   ContainerFacts container_;
+  std::optional<std::vector<std::uint8_t>> in_place_;  ///< what is read in place of the file
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;
   OIIO::ImageInput::unique_ptr input_;
   bool opened_for_pixels_ = false;
   std::vector<OIIO::ImageSpec> specs_;

@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "image/file_signature.h"
+#include "image/still_brands.h"
 
 namespace afterglow {
 namespace {
@@ -31,10 +32,6 @@ constexpr std::array kPictureSignatures{
     FileSignature{0, "\xff\x4f\xff\x51"sv, "jpeg2000"},
     FileSignature{0, "\x01\xda"sv, "sgi"},
     FileSignature{0, "GIF8"sv, "gif"},
-    FileSignature{8, "avif"sv, "heif"},
-    FileSignature{8, "heic"sv, "heif"},
-    FileSignature{8, "heix"sv, "heif"},
-    FileSignature{8, "mif1"sv, "heif"},
 };
 
 /// P1 … P6, PF and Pf, each with white space behind it.
@@ -56,11 +53,12 @@ bool is_targa(const std::filesystem::path& file, std::ifstream& in) {
 }  // namespace
 
 std::string picture_format(const std::filesystem::path& file) {
-  std::array<char, 16> bytes{};
+  std::array<char, 400> bytes{};
   std::ifstream in(file, std::ios::binary);
   in.read(bytes.data(), bytes.size());
   const std::string_view head(bytes.data(), static_cast<std::size_t>(in.gcount()));
   if (const auto format = format_by_signature(kPictureSignatures, head); !format.empty()) return std::string(format);
+  if (still_of(head) == Still::heif) return "heif";
   if (is_pnm(head)) return "pnm";
   return is_targa(file, in) ? "targa" : "";
 }

@@ -73,11 +73,14 @@ const char* text_fault(const std::string& key, Bytes text) {
 }  // namespace
 
 const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::uint64_t at, std::uint64_t length,
-                               std::vector<std::uint8_t>& profile) {
+                               ContainerFacts& facts) {
   if (type != "eXIf" && type != "iCCP" && type != "tEXt" && type != "zTXt" && type != "iTXt") return nullptr;
   if (length > kMostMetadata) return "has more than 16 MiB of metadata in one piece";
   const Buffer chunk = bytes_at(in, at, length);
-  if (type == "eXIf") return exif_fault(chunk);
+  if (type == "eXIf") {
+    if (!facts.orientation) facts.orientation = exif_orientation(chunk);
+    return exif_fault(chunk);
+  }
   const auto key_end = std::ranges::find(chunk, 0);
   const std::string key(chunk.begin(), key_end);
   Bytes rest = Bytes(chunk).subspan(std::min(chunk.size(), key.size() + 1));
@@ -85,7 +88,7 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
   if (rest.empty()) return nullptr;
   if (type == "iCCP") {
     const Buffer unpacked = inflated(rest.subspan(1));
-    if (profile.empty()) profile = unpacked;
+    if (facts.profile.empty()) facts.profile = unpacked;
     return icc_fault(unpacked);
   }
   if (type == "zTXt") return text_fault(key, inflated(rest.subspan(1)));
@@ -99,8 +102,9 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
   return packed ? text_fault(key, inflated(rest)) : text_fault(key, rest);
 }
 
-Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
-  Buffer profile;
+Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size,
+                        ContainerFacts& facts) {
+  constexpr std::size_t kHead = 6;  // "Exif\0\0", which some programs write: the reader skips it, whatever it is
   for (std::uint64_t at = 12; at + 8 <= size;) {
     const Buffer head = bytes_at(in, at, 8);
     if (head.size() < 8) break;
@@ -108,16 +112,16 @@ Result<std::vector<std::uint8_t>> check_webp(const std::filesystem::path& file, 
     const std::string_view type(reinterpret_cast<const char*>(head.data()), 4);
     if ((type == "EXIF" || type == "ICCP") && length > kMostMetadata)
       return malformed(file, "has more than 16 MiB of metadata in one piece");
-    if (type == "ICCP" && profile.empty()) profile = bytes_at(in, at + 8, length);
+    if (type == "ICCP" && facts.profile.empty()) facts.profile = bytes_at(in, at + 8, length);
     if (type == "EXIF") {
       const Buffer chunk = bytes_at(in, at + 8, length);
-      // The reader skips six bytes, whatever they are.
-      if (const char* why = exif_fault(Bytes(chunk).subspan(std::min<std::size_t>(chunk.size(), 6))))
-        return malformed(file, why);
+      const Bytes behind = Bytes(chunk).subspan(std::min(chunk.size(), kHead));
+      if (const char* why = exif_fault(behind)) return malformed(file, why);
+      facts.orientation = exif_orientation(chunk);
     }
     at += 8 + length + (length & 1);
   }
-  return profile;
+  return {};
 }
 
 Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {

@@ -108,6 +108,11 @@ class WebpMovie : public MovieSource {
     return (first && !covers) || (frame.has_alpha != 0 && (first || frame.blend_method == WEBP_MUX_NO_BLEND)) ||
            frame.dispose_method == WEBP_MUX_DISPOSE_BACKGROUND;
   }
+  /// Milliseconds. Who writes none means what browsers show.
+  static int length_of(const WebPIterator& frame) {
+    constexpr int kUsual = 100;
+    return frame.duration > 0 ? frame.duration : kUsual;
+  }
   /// When the last one ends.
   long long add_frames(WebPDemuxer& demuxer) {
     long long at = 0;
@@ -115,8 +120,8 @@ class WebpMovie : public MovieSource {
     for (int more = WebPDemuxGetFrame(&demuxer, 1, &frame); more != 0; more = WebPDemuxNextFrame(&frame)) {
       facts_.has_alpha = facts_.has_alpha || makes_holes(frame);
       facts_.pts.push_back(at);
-      facts_.last_length = frame.duration;
-      at += frame.duration;
+      facts_.last_length = length_of(frame);
+      at += facts_.last_length;
     }
     WebPDemuxReleaseIterator(&frame);
     return at;

@@ -73,7 +73,10 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
   Result<void> written;
   try {
     if (!out.failure()) written = write_format(picture, format, out, temporary.string(), options, diagnostics);
-    if (written && format.kind == OutputKind::dpx) set_dpx_name_and_time(picture, name, out);
+    if (written && format.kind == OutputKind::dpx) {
+      pad_dpx_lines(out);
+      set_dpx_name_and_time(picture, name, out);
+    }
   } catch (const std::exception& error) {
     written = Error{ErrorKind::io, "cannot be written: " + exception_text(error)};
   }

@@ -31,6 +31,21 @@ constexpr const char* kGood = "vec4(mix(color.rgb, tint, strength), color.a)";
 constexpr const char* kBroken =
     "vec4(color.r > 3.0 ? sqrt(tint - color.rgb) : mix(color.rgb, tint, strength), color.a)";
 
+TEST_F(Stress, WhatCannotBeRepeatedIsRefusedBeforeTheSoak) {
+  EXPECT_EQ(stress({"--repeat", ""}).exit_code, kFiles) << "a script whose variable is empty";
+  EXPECT_EQ(stress({"--for", ""}).exit_code, kUsage);
+  const Outcome latin = stress({"--effect", "posterize", "--cases", "1", "--out", "x\xff"});
+  EXPECT_EQ(latin.exit_code, kUsage);
+  EXPECT_THAT(latin.err, HasSubstr("names must be UTF-8"));
+}
+
+TEST_F(Stress, AReportOnStandardOutputIsAlone) {
+  const Outcome outcome = stress({"--effect", "posterize", "--cases", "5", "--report", "-"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_TRUE(nlohmann::json::accept(outcome.out)) << outcome.out;
+  EXPECT_THAT(outcome.err, HasSubstr("black stays black")) << "the table";
+}
+
 TEST_F(Stress, TheLibraryStandsTheShortForm) {
   const Outcome outcome = stress({"--short", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.out << outcome.err;

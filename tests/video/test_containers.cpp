@@ -2,11 +2,13 @@
 // What containers say of frames: edit lists, time stamps, rotation, the shape of pixels, fields.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <zlib.h>
 
 #include <fstream>
 
 #include "clips.h"
 #include "core/file.h"
+#include "image/srgb.h"
 #include "play/footage.h"
 
 namespace afterglow {
@@ -124,6 +126,63 @@ TEST_F(Containers, InterlacedMaterialIsTold) {
 TEST_F(Containers, WhatAVideoDoesNotSayIsNoted) {
   ASSERT_TRUE(open(clip("untold.mkv", "-c:v ffv1 -pix_fmt yuv420p", 2)));
   EXPECT_THAT(messages_, Contains(HasSubstr("does not say its matrix, primaries, transfer; BT.601")));
+}
+
+/// The chunks in front count for all frames, as for a PNG that does not move.
+TEST_F(Containers, APngThatMovesHasTheColoursOfItsHead) {
+  const std::string file = clip("a.png", "-f apng -plays 0 -pix_fmt rgb24", 3);
+  std::string bytes = read_file(file).value();
+  const auto number = [](std::uint32_t value) {
+    std::string out;
+    for (int i = 3; i >= 0; --i) out += static_cast<char>(value >> (8 * i) & 255);
+    return out;
+  };
+  const auto chunk = [&](const std::string& type, const std::string& data) {
+    const std::string checked = type + data;
+    const auto sum = crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size()));
+    return number(static_cast<std::uint32_t>(data.size())) + checked + number(static_cast<std::uint32_t>(sum));
+  };
+  const std::string exif("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0", 26);
+  constexpr std::size_t kBehindHead = 33;  // signature and IHDR
+  // Others of the kind that FFmpeg has written go.
+  for (const std::string type : {"gAMA", "cHRM", "sRGB", "iCCP", "cICP"})
+    if (const std::size_t at = bytes.find(type); at != std::string::npos)
+      bytes.erase(at - 4, 12 + static_cast<unsigned char>(bytes[at - 1]));
+  bytes.insert(kBehindHead, chunk("gAMA", number(100000)) + chunk("eXIf", exif));
+  std::ofstream(path("b.apng"), std::ios::binary) << bytes;
+  const auto plain = open(file), linear = open(path("b.apng"));
+  ASSERT_TRUE(plain && linear);
+  const Picture a = read(plain, 1).value(), b = read(linear, 1).value();
+  ASSERT_EQ(b.color.size(), (Size{a.color.height, a.color.width})) << "turned";
+  // The corner at the lower left is at the upper left now.
+  const float* stored = a.color.at(0, a.color.height - 1);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(srgb_to_linear(b.color.at(0, 0)[c]), stored[c], 1e-5) << c;
+}
+
+/// Of a matrix that is said, primaries that go with it and no other.
+TEST_F(Containers, APartlyTaggedVideoDoesNotContradictItself) {
+  for (const auto& [matrix, primaries] : {std::pair("bt2020nc", 9), {"bt709", 1}, {"smpte170m", 5}}) {
+    const auto movie =
+        open(clip(fmt::format("{}.mkv", matrix), fmt::format("-c:v ffv1 -pix_fmt yuv420p -colorspace {}", matrix), 2));
+    ASSERT_TRUE(movie);
+    EXPECT_EQ(movie->facts().color.primaries, primaries) << matrix;
+  }
+  EXPECT_THAT(messages_, Contains(HasSubstr("does not say its primaries, transfer; BT.2020, as the rest, is taken")));
+}
+
+/// AVIF and HEIF sequences keep their alpha in another track, which is not the picture however large it is.
+TEST_F(Containers, TheFirstTrackOfAPictureSequenceIsThePicture) {
+  ffmpeg(
+      fmt::format("-f lavfi -i color=red:s=64x64:r=10 -f lavfi -i nullsrc=s=64x64:r=10,geq=lum='random(0)*255' "
+                  "-frames:v 4 -map 0 -map 1 -c:v libaom-av1 -cpu-used 8 -crf 10 -pix_fmt:v:0 yuv420p "
+                  "-pix_fmt:v:1 gray -f mp4 -brand avis '{}'",
+                  path("moves.avif")));
+  const auto movie = open(path("moves.avif"));
+  ASSERT_TRUE(movie);
+  const auto picture = read(movie, 1).value();
+  EXPECT_GT(picture.color.pixels[0], 0.5f);
+  EXPECT_LT(picture.color.pixels[1], 0.1f);
+  EXPECT_THAT(messages_, Contains(HasSubstr("its alpha is in a track of its own, which is not read")));
 }
 
 TEST_F(Containers, OtherFilesAreNeverOpened) {

@@ -111,6 +111,14 @@ TEST_F(RunVideos, FramesShowAsLongAsTheyDid) {
   clip("slow.gif", "-vf \"setpts='N*10/24/TB'\" -final_delay 200", 3);
   ASSERT_EQ(shell("AFTERGLOW run look.lua slow.gif -o slow.mkv --codec ffv1"), 0) << said_;
   EXPECT_NEAR(length("slow.mkv"), 20 / 24.0 + 2, 0.03);
+  for (const char* name : {"slow.out.gif", "slow.out.apng"}) {
+    ASSERT_EQ(shell(fmt::format("AFTERGLOW run look.lua slow.gif -o {0} && ffprobe -v error -show_entries "
+                                "packet=duration_time -of csv=p=0 {0} | tail -1 >length",
+                                name)),
+              0)
+        << said_;
+    EXPECT_NEAR(std::stod(read_file(path("length")).value()), 2, 0.03) << name;
+  }
 }
 
 TEST_F(RunVideos, ATruncatedClipEndsWithExitCode4AndWhatIsWhole) {

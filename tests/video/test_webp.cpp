@@ -31,6 +31,16 @@ class Webp : public Clips {
   }
 };
 
+TEST_F(Webp, LengthsOfNothingAreWhatBrowsersShow) {
+  std::string bytes = bytes_of(webp("a.webp", 3, false));
+  for (std::size_t at = bytes.find("ANMF"); at != std::string::npos; at = bytes.find("ANMF", at + 4))
+    for (std::size_t i = 0; i < 3; ++i) bytes[at + 8 + 12 + i] = 0;  // behind place and size: the length
+  const auto movie = open(write("none.webp", bytes));
+  ASSERT_TRUE(movie);
+  EXPECT_EQ(movie->facts().pts, (std::vector<long long>{0, 100, 200}));
+  EXPECT_EQ(movie->facts().last_length, 100);
+}
+
 TEST_F(Webp, AnyFrameIsThatOfTheLosslessOriginal) {
   for (const bool alpha : {false, true}) {
     const auto movie = open(webp("a.webp", 30, alpha)), truth = open(apng("a.apng", 30, alpha));

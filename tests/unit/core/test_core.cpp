@@ -207,6 +207,7 @@ TEST(Filter, TextTellsFiltersApart) {
 TEST(Text, MarkupNamesWhatItsReadersTakeForTheirs) {
   EXPECT_EQ(markup_text("a < b && c > \"d\""), "a &lt; b &amp;&amp; c &gt; &quot;d&quot;");
   EXPECT_EQ(markup_text("1920×1080"), "1920×1080");
+  EXPECT_EQ(markup_text("\xff&"), "\xEF\xBF\xBD&amp;") << "XML is UTF-8";
   EXPECT_EQ(markup_text("a\x1b[2J\nb\xE2\x80\xAE"), "a [2J\nb ");
 }
 

@@ -231,5 +231,20 @@ TEST_F(Temporaries, ThoseOfDeadProcessesAreRemovedAndNoOthers) {
   EXPECT_EQ(remove_abandoned_temporaries(folder_ / "missing"), 0);
 }
 
+/// Killed, and nobody has asked after it yet.
+TEST_F(Temporaries, ThoseOfZombiesAreRemoved) {
+  const pid_t child = fork();
+  if (child == 0) {
+    touch(temporary_beside(folder_ / "dead.exr"));
+    _exit(0);
+  }
+  siginfo_t ended{};
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
+  EXPECT_EQ(files().size(), 1u);
+  EXPECT_EQ(remove_abandoned_temporaries(folder_), 1);
+  EXPECT_TRUE(files().empty());
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+}
+
 }  // namespace
 }  // namespace afterglow

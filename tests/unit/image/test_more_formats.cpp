@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <fstream>
 
 #include "core/file.h"
 #include "image/output_format.h"
@@ -386,6 +387,69 @@ TEST(MoreFormats, WebpHoldsStraightCodes) {
   const std::string codes(reinterpret_cast<const char*>(pixels), 37 * 53 * 4);
   WebPFree(pixels);
   EXPECT_TRUE(pam.ends_with(codes));
+}
+
+/// Lines begin at words of 32 bits (SMPTE ST 268), whether the header tells of it, as ours does, or not.
+TEST(MoreFormats, DpxLinesAreWholeWords) {
+  const TemporaryFolder folder;
+  for (const int width : {5, 6, 7, 8}) {
+    const Picture picture = wedge(width, 4, false);
+    ASSERT_TRUE(write(picture, folder / "a.dpx", with(SampleType::uint8)));
+    const std::string bytes = read_file(folder / "a.dpx").value();
+    const std::size_t line = static_cast<std::size_t>(3 * width), words = (line + 3) / 4 * 4;
+    ASSERT_GE(bytes.size(), 4 * words);
+    const std::size_t offset = bytes.size() - 4 * words;
+    EXPECT_EQ(offset % 64, 0u) << "of the pixels";
+    const Picture told = read_or_fail(folder / "a.dpx");
+    std::string untold = bytes, tight = bytes.substr(0, offset);
+    untold.replace(812, 4, 4, '\0');
+    for (std::size_t y = 0; y < 4; ++y) tight += bytes.substr(offset + y * words, line);
+    tight.replace(812, 4, 4, '\0');
+    for (const std::string& other : {untold, tight}) {  // as FFmpeg writes them, and as OpenImageIO does
+      std::ofstream(folder / "b.dpx", std::ios::binary) << other;
+      EXPECT_EQ(read_or_fail(folder / "b.dpx").color.pixels, told.color.pixels) << width;
+    }
+    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
+      ASSERT_NEAR(told.color.pixels[i], picture.color.pixels[i], 0.02 + 0.05 * picture.color.pixels[i]) << width;
+  }
+}
+
+/// Soft edges keep their colours: nothing is multiplied in 8 bits.
+TEST(MoreFormats, WebpIsReadStraight) {
+  const TemporaryFolder folder;
+  Picture picture = wedge(16, 16, true);
+  for (std::size_t i = 0; i < picture.color.pixels.size(); i += 4) {
+    const float alpha = static_cast<float>(i / 4 % 16 + 1) / 255;
+    picture.color.pixels[i + 3] = alpha;
+    for (std::size_t c = 0; c < 3; ++c) picture.color.pixels[i + c] = alpha * (c == 0 ? 0.5f : 0.1f);
+  }
+  picture.has_alpha = true;
+  for (const char* name : {"o.webp", "o.png"})
+    ASSERT_TRUE(write(picture, folder / name, with(SampleType::automatic))) << name;
+  const Picture webp = read_or_fail(folder / "o.webp"), png = read_or_fail(folder / "o.png");
+  ASSERT_EQ(webp.color.pixels.size(), png.color.pixels.size());
+  for (std::size_t i = 0; i < png.color.pixels.size(); ++i)
+    ASSERT_FLOAT_EQ(webp.color.pixels[i], png.color.pixels[i]) << i;
+}
+
+/// As the container's specification has it: the chunk begins with the TIFF head.
+TEST(MoreFormats, WebpIsTurnedAsItsExifSays) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write(wedge(40, 24, false), folder / "a.webp"));
+  const std::string plain = read_file(folder / "a.webp").value();
+  const std::string exif("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0", 26);
+  for (const bool named : {false, true}) {
+    std::string chunk = (named ? std::string("Exif\0\0", 6) : "") + exif;
+    const auto number = [](std::size_t value, int bytes) {
+      std::string out;
+      for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 255);
+      return out;
+    };
+    const std::string body = "WEBPVP8X" + number(10, 4) + std::string("\x08\0\0\0", 4) + number(39, 3) + number(23, 3) +
+                             plain.substr(12) + "EXIF" + number(chunk.size(), 4) + chunk;
+    std::ofstream(folder / "b.webp", std::ios::binary) << "RIFF" << number(body.size(), 4) << body;
+    EXPECT_EQ(read_or_fail(folder / "b.webp").color.size(), (Size{24, 40})) << named;
+  }
 }
 
 TEST(MoreFormats, WebpLossy) {

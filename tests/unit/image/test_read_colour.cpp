@@ -2,6 +2,7 @@
 // Profiles, alpha and orientation of real files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <lcms2.h>
 
 #include "image/color_matrix.h"
 #include "image/icc_profile.h"
@@ -44,6 +45,29 @@ TEST(ReadColour, SrgbProfileAndSoftStraightAlpha) {
     for (std::size_t c = 0; c < 3; ++c)
       ASSERT_NEAR(picture.color.pixels[i + c], srgb_to_linear(codes[i + c] / 255.0) * alpha, 1e-6);
     ASSERT_NEAR(picture.color.pixels[i + 3], alpha, 1e-6);
+  }
+}
+
+/// A curve of grey gives L* where the profile meets others in Lab.
+TEST(ReadColour, GreyProfilesThatMeetInLab) {
+  cmsToneCurve* straight = cmsBuildGamma(nullptr, 1.0);
+  cmsHPROFILE profile = cmsCreateGrayProfile(cmsD50_xyY(), straight);
+  cmsSetPCS(profile, cmsSigLabData);
+  cmsUInt32Number size = 0;
+  ASSERT_TRUE(cmsSaveProfileToMem(profile, nullptr, &size));
+  std::vector<std::uint8_t> bytes(size);
+  ASSERT_TRUE(cmsSaveProfileToMem(profile, bytes.data(), &size));
+  cmsCloseProfile(profile);
+  cmsFreeToneCurve(straight);
+  ColorEncoding encoding;
+  encoding.max_code = 255;
+  encoding.grey = true;
+  ASSERT_TRUE(use_icc_profile(bytes, 1, encoding));
+  ASSERT_EQ(encoding.curve, TransferCurve::tables);
+  for (const int code : {0, 10, 64, 128, 200, 255}) {
+    const double lightness = 100 * code / 255.0;  // CIE 15: L* to Y
+    const double light = lightness > 8 ? std::pow((lightness + 16) / 116, 3) : lightness * 27 / 24389;
+    for (const auto& table : encoding.tables) EXPECT_NEAR(table[static_cast<std::size_t>(code)], light, 2e-3) << code;
   }
 }
 

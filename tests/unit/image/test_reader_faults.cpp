@@ -59,6 +59,45 @@ TEST_F(ReaderFaults, PackedGreyBmpsAreReadAsColours) {
   EXPECT_GT(picture->color.at(0, 0)[0], picture->color.at(0, 8)[0]) << "the first line is the lowest";
 }
 
+/// Most programs end the last line as all others, and the picture behind it.
+TEST_F(ReaderFaults, PackedBmpsMayEndEachLine) {
+  write_bytes(folder_ / "usual.bmp", packed_bmp(8, 0, false));
+  std::string ended = packed_bmp(8, 0, false);
+  ended.back() = 0;
+  write_bytes(folder_ / "ended.bmp", ended + std::string{'\0', '\1'});
+  Diagnostics silent;
+  const auto usual = read_picture(folder_ / "usual.bmp", {}, silent);
+  const auto picture = read_picture(folder_ / "ended.bmp", {}, silent);
+  ASSERT_TRUE(usual) << usual.error().text();
+  ASSERT_TRUE(picture) << picture.error().text();
+  EXPECT_EQ(picture->color.pixels, usual->color.pixels);
+  EXPECT_GT(picture->color.at(0, 0)[0], 0.9f) << "the red of the table";
+}
+
+/// Two codes a byte, codes as they are, and steps over what stays colour 0.
+TEST_F(ReaderFaults, BmpsOfFourBitsAreUnpacked) {
+  const auto colors = [] {
+    std::string table;
+    for (unsigned i = 0; i < 16; ++i) table += number(i == 0 ? 0 : 0xffu << (8 * (i % 3)), 4);
+    return table;
+  }();
+  const std::string lines = std::string("\x03\x12\0\0", 4) +             // 1 2 1 on the lowest line
+                            std::string("\0\x03\x31\x20\0\0", 6) +       // 3 1 2 as they are
+                            std::string("\0\x02\x01\0\x01\x30\0\1", 8);  // a step to the right, then 3
+  const std::string bytes = "BM" + number(54 + 64 + lines.size(), 4) + zeros(4) + number(54 + 64, 4) + number(40, 4) +
+                            number(3, 4) + number(3, 4) + number(1, 2) + number(4, 2) + number(2, 4) +
+                            number(lines.size(), 4) + zeros(16) + colors + lines;
+  write_bytes(folder_ / "four.bmp", bytes);
+  Diagnostics silent;
+  const auto picture = read_picture(folder_ / "four.bmp", {}, silent);
+  ASSERT_TRUE(picture) << picture.error().text();
+  const int want[3][3] = {{0, 3, 0}, {3, 1, 2}, {1, 2, 1}};
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 3; ++x)
+      for (int c = 0; c < 3; ++c)  // the table holds blue first
+        EXPECT_EQ(picture->color.at(x, y)[c], want[y][x] != 0 && want[y][x] % 3 == 2 - c ? 1 : 0) << x << y << c;
+}
+
 TEST_F(ReaderFaults, PackedBmpsOfOtherPixelsOrTooLarge) {
   EXPECT_THAT(said(packed_bmp(24)), HasSubstr("only pictures of 4 or 8 bits"));
   ReadOptions small;
