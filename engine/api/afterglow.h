@@ -473,11 +473,11 @@ static inline afterglow_bindings afterglow_bindings_default(void) {
 AFTERGLOW_API VkFormat afterglow_stack_result_format(const afterglow_stack *stack);
 
 /* Says which images the next recordings read and write. After each afterglow_stack_prepare that made something new, and
- * whenever images change; a prepare that meets other pictures of the look's own, as of a mask that a function chooses by
- * frame, has made something new. Nothing that was recorded from the stack may be in flight. Pictures that the look has of its
- * own (masks, tables) are brought to the device here: the caller must not use the queue meanwhile. One thread at a
- * time. Errors: device, other (an image is missing or of the wrong size or format), usage (not AFTERGLOW_USE_COMMANDS,
- * nothing prepared). */
+ * whenever images change; a prepare that meets other pictures of the look's own, as of a mask that a function chooses
+ * by frame, has made something new. Nothing that was recorded from the stack may be in flight. Pictures that the look
+ * has of its own (masks, tables) are brought to the device here: the caller must not use the queue meanwhile. One
+ * thread at a time. Errors: device, other (an image is missing or of the wrong size or format), usage (not
+ * AFTERGLOW_USE_COMMANDS, nothing prepared). */
 AFTERGLOW_API afterglow_error *afterglow_stack_bind(afterglow_stack *stack, const afterglow_bindings *bindings);
 
 /* Records the stack. Inputs must be in SHADER_READ_ONLY_OPTIMAL, their writes made visible to sampled reads of fragment

@@ -100,7 +100,9 @@ std::string arguments_document(const Backend& backend) {
 std::string explain_document(const Backend& backend) {
   const Explanation& explanation = backend.explanation();
   const std::vector<Skipped> skipped = backend.report().skipped;
-  Json out{{"name", backend.preset().name()}, {"inputs", backend.preset().possible_needs()}, {"pre_roll", backend.pre_roll()}};
+  Json out{{"name", backend.preset().name()},
+           {"inputs", backend.preset().possible_needs()},
+           {"pre_roll", backend.pre_roll()}};
   add_volumes(out, explanation);
   out["entries"] = Json::array();
   const auto& entries = backend.entries();

@@ -282,6 +282,7 @@ Result<BatchRequest> RunArguments::request() const {
                    .beside = {{"--lock", lock}, {"--report", report}}};
   if (watch && files.frames.empty())
     return Error{ErrorKind::usage, "--watch needs --frames: it ends when they are done"};
+  if (lock == "-") return Error{ErrorKind::usage, "--lock is a file, to be read by --locked; '-' is none"};
   if (report == "-" && files.output == "-")
     return Error{ErrorKind::usage, "--report - and -o - are both standard output"};
   out.watch = watch;

@@ -132,16 +132,16 @@ class Program {
   /// is `result_format`. Frames that take turns, each with images of its own, have a place each (0, 1, …): what is
   /// recorded for one stays good when another is bound. Must not be called while a submission of that place is in
   /// flight. It submits what the graph brings along and the device does not have yet, and waits; each place makes its
-  /// descriptors the first time. A program whose graph's result is its source does nothing. Errors: other (no such image can be bound),
-  /// device.
+  /// descriptors the first time. A program whose graph's result is its source does nothing. Errors: other (no such
+  /// image can be bound), device.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result, int place = 0);
 
   /// Whether `bind` has said which images `record` reads and writes, and brought along what they are read with.
   bool bound(int place = 0) const;
 
-  /// How often images were bound so far or came to be unbound, those of histories too. Commands that were recorded before the last time must
-  /// not be submitted again.
+  /// How often images were bound so far or came to be unbound, those of histories too. Commands that were recorded
+  /// before the last time must not be submitted again.
   int bindings(int place = 0) const;
 
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible

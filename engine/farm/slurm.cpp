@@ -95,6 +95,15 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// Of what `sbatch --parsable` printed: "24" or "24;cluster", behind what wrappers and plug-ins of a site say.
+Result<SlurmArray> array_of(const std::string& printed, std::size_t base) {
+  const auto lines = lines_of(trim(printed));
+  const auto parts = split(lines.empty() ? "" : trim(lines.back()), ';');
+  const bool number = !parts.empty() && !parts[0].empty() && std::ranges::all_of(parts[0], is_digit);
+  if (number) return SlurmArray{parts[0], parts.size() > 1 ? parts[1] : "", base};
+  return Error{ErrorKind::io, fmt::format("sbatch told no number of a job: '{}'", tidy_message(trim(printed), 200))};
+}
+
 /// Of arrays of one cluster, by comma.
 std::map<std::string, std::string> ids_by_cluster(const Submissions& submissions) {
   std::map<std::string, std::string> out;
@@ -283,15 +292,6 @@ Result<std::size_t> largest_array() {
   AFTERGLOW_TRY(const std::string config, output_of({"scontrol", "show", "config"}));
   if (const auto largest = largest_array(config)) return *largest;
   return Error{ErrorKind::io, "scontrol does not say MaxArraySize; are job arrays switched off?"};
-}
-
-/// Of what `sbatch --parsable` printed: "24" or "24;cluster", behind what wrappers and plug-ins of a site say.
-Result<SlurmArray> array_of(const std::string& printed, std::size_t base) {
-  const auto lines = lines_of(trim(printed));
-  const auto parts = split(lines.empty() ? "" : trim(lines.back()), ';');
-  const bool number = !parts.empty() && !parts[0].empty() && std::ranges::all_of(parts[0], is_digit);
-  if (number) return SlurmArray{parts[0], parts.size() > 1 ? parts[1] : "", base};
-  return Error{ErrorKind::io, fmt::format("sbatch told no number of a job: '{}'", tidy_message(trim(printed), 200))};
 }
 
 Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks) {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <fstream>
 #include <span>
 
 #include "core/file.h"
@@ -23,7 +23,8 @@ struct Lines {
 
   /// Codes beyond a side are dropped, as other programs do.
   void put(unsigned code) {
-    if (x < width && y < height) codes[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)] = code & 255;
+    if (x >= width) return;
+    if (y < height) codes[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)] = code & 255;
     ++x;
   }
 };
@@ -45,7 +46,7 @@ bool unpack_runs(Bytes runs, bool nibbles, Lines& lines) {
       return true;
     } else if (value == 2) {
       if (at + 2 > runs.size()) return false;
-      lines.x += runs[at];
+      lines.x = std::min(lines.width, lines.x + runs[at]);
       lines.y += runs[at + 1];
       at += 2;
     } else {
@@ -68,11 +69,14 @@ Result<std::optional<std::vector<std::uint8_t>>> unpack_bmp(const std::filesyste
   constexpr std::size_t kHead = 54;
   constexpr std::uint32_t kOldHeader = 12, kRuns8 = 1, kRuns4 = 2;
   const auto damaged = [&](const char* why) { return Error{ErrorKind::io, why, file.string()}; };
+  std::array<unsigned char, kHead> head{};
+  std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(head.data()), head.size());
+  const std::uint32_t packing = little_endian(&head[30], 4), offset = little_endian(&head[10], 4);
+  if (little_endian(&head[14], 4) == kOldHeader || (packing != kRuns8 && packing != kRuns4))
+    return std::optional<std::vector<std::uint8_t>>();
   AFTERGLOW_TRY(const std::string text, read_file(file, std::size_t{4} << 30));
   const Bytes in(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  if (in.size() < kHead || little_endian(&in[14], 4) == kOldHeader) return std::optional<std::vector<std::uint8_t>>();
-  const std::uint32_t packing = little_endian(&in[30], 4), offset = little_endian(&in[10], 4);
-  if (packing != kRuns8 && packing != kRuns4) return std::optional<std::vector<std::uint8_t>>();
+  if (in.size() < kHead) return damaged("is truncated");
   Lines lines{.width = static_cast<int>(little_endian(&in[18], 4)),
               .height = static_cast<int>(little_endian(&in[22], 4)),
               .stride = 0,

@@ -38,6 +38,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUse{"option_first", {"run", "--pecision", "fp16", "look.lua", "a.exr"}, "unknown option '--pecision'"},
         WrongUse{"option_of_nothing_near", {"check", "look.lua", "--qwertyuiop"}, "unknown option '--qwertyuiop'"},
         WrongUse{"no_output", {"run", "look.lua", "a.exr"}, "--output"},
+        WrongUse{"lock_on_output", {"run", "look.lua", "a.exr", "-o", "a.png", "--lock", "-"}, "'-' is none"},
         WrongUse{"no_input", {"run", "look.lua", "-o", "a.png"}, "INPUT"}, WrongUse{"no_preset", {"check"}, "PRESET"},
         WrongUse{"too_much", {"devices", "a.exr"}, "unexpected argument 'a.exr'"},
         WrongUse{"precision", {"run", "look.lua", "a.exr", "-o", "a.png", "--precision", "fp8"}, "fp8"},
