@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -43,17 +44,40 @@ LiveOptions Player::State::live_options(const std::vector<Override>& overrides) 
   return live;
 }
 
+/// A file that is slow to come must not hold the player up: what is in the midst of one ends on a thread of its own.
+void Player::State::end_reading() {
+  std::erase_if(ending,
+                [](const auto& one) { return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+  if (!ahead) return;
+  ahead->want({});
+  ahead->forget();
+  try {
+    ending.push_back(
+        std::async(std::launch::async, [reader = std::move(ahead), watch = std::move(rendering)]() mutable {
+          watch.reset();
+          reader.reset();
+        }));
+  } catch (const std::system_error&) {  // no more threads to be had: they have ended here
+  }
+}
+
 void Player::State::begin_reading() {
-  rendering.reset();
-  ahead.reset();  // waits for what is being read of the footage before
-  read_footage = footage;
+  end_reading();
+  std::uint64_t reader = 0;
+  {
+    const std::lock_guard lock(mutex);
+    reader = ++readers;
+    read_footage = footage;
+    unreadable.clear();
+  }
   wanted_for.clear();
-  unreadable.clear();
   ahead = std::make_unique<ReadAhead>(
-      [this](int key) {
-        const auto read_from = readable();
+      [this, reader](int key) -> Result<Picture> {
+        const auto read_from = readable(reader);
+        if (!read_from) return Error{ErrorKind::other, "is of the footage before"};  // nobody asks for it any more
         auto read = read_from->read(key, needs_now(), diagnostics);
         const std::lock_guard lock(mutex);
+        if (reader != readers) return read;
         if (read) {
           unreadable.erase(key);
         } else {

@@ -10,9 +10,10 @@ FootageNeeds Player::State::needs_now() {
   return needs;
 }
 
-std::shared_ptr<const Footage> Player::State::readable() {
+/// What that reader reads of; null: it is of footage before.
+std::shared_ptr<const Footage> Player::State::readable(std::uint64_t reader) {
   const std::lock_guard lock(mutex);
-  return read_footage;
+  return reader == readers ? read_footage : nullptr;
 }
 
 /// `footage`, with the transport at its first frame, or at the one that was asked for.

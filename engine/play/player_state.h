@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <future>
 #include <mutex>
 #include <set>
 
@@ -27,7 +28,8 @@ struct Player::State {
   bool awake = false;
   FootageNeeds needs;                           ///< of the looks that are there
   std::set<int> unreadable;                     ///< pictures whose last reading failed
-  std::shared_ptr<const Footage> read_footage;  ///< that readers read of
+  std::shared_ptr<const Footage> read_footage;  ///< that the reader reads of
+  std::uint64_t readers = 0;                    ///< that there were: the number of the last one
 
   std::shared_ptr<const Footage> footage;
   Transport transport{1};
@@ -58,6 +60,7 @@ struct Player::State {
   std::uint64_t measured = 0;               ///< generation of the stack whose first frame was measured
   std::unique_ptr<ReadAhead> ahead;         // its threads use the rest, as that of the next does
   std::unique_ptr<FootageWatch> rendering;  ///< null: files stay as they are
+  std::vector<std::future<void>> ending;    ///< those of footage before, whose threads are in the midst of something
 
   /// What was looked at last.
   struct AskedFinite {
@@ -77,9 +80,10 @@ struct Player::State {
   void wake();
   LiveOptions live_options(const std::vector<Override>& overrides);
   void begin_reading();
+  void end_reading();
   void take_footage();
   Result<void> open_row(FootageOptions wanted);
-  std::shared_ptr<const Footage> readable();
+  std::shared_ptr<const Footage> readable(std::uint64_t reader);
   FootageNeeds needs_now();
   void want_pictures();
   void take_builds();

@@ -178,5 +178,19 @@ TEST_F(PlayerTest, PlaysSomethingElse) {
   EXPECT_FLOAT_EQ(result(), 0.25f);
 }
 
+/// Readers of the footage before end by themselves; what they bring is nobody's any more.
+TEST_F(PlayerTest, FootageOpenedInTurnsIsTheLastOne) {
+  write_sequence(6);
+  Player& player = open();
+  for (int i = 0; i < 60; ++i) {
+    const int number = i * 5 % 6 + 1;
+    ASSERT_TRUE(player.open_footage({path("s." + std::to_string(number) + ".exr")}));
+    if (i % 7 != 6) continue;
+    turn();
+    EXPECT_EQ(source(), static_cast<float>(number) / 8) << i;
+    EXPECT_EQ(player.stats().unreadable, 0) << i;
+  }
+}
+
 }  // namespace
 }  // namespace afterglow
