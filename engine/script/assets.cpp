@@ -50,8 +50,8 @@ std::string nearest_file(const std::vector<fs::path>& roots, const std::string& 
 std::size_t bytes_of(const ImageData& data) { return data.pixels.size() * sizeof(float); }
 
 /// RGBA from whatever channels a picture has.
-std::vector<float> rgba(const Image& image) {
-  if (image.channels == 4) return image.pixels;
+std::vector<float> rgba(Image image) {
+  if (image.channels == 4) return std::move(image.pixels);
   std::vector<float> out(static_cast<std::size_t>(image.size().area()) * 4, 1.0F);
   const auto channels = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i < out.size() / 4; ++i)
@@ -223,10 +223,11 @@ std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& fi
       error.kind = ErrorKind::script;  // it is a part of the look
       throw ScriptError{std::move(error)};
     }
-    std::vector<float> pixels = rgba(picture->color);
+    const Size size = picture->color.size();
     const bool matte = is_alpha_alone(*picture);
+    std::vector<float> pixels = rgba(std::move(picture->color));
     for (std::size_t i = 0; matte && i < pixels.size(); i += 4) pixels[i + 3] = pixels[i];
-    return make_data(picture->color.size(), std::move(pixels), file, !picture->has_alpha && !matte);
+    return make_data(size, std::move(pixels), file, !picture->has_alpha && !matte);
   });
   count_data(runtime, loaded.get());
   return known.data = std::move(loaded);
