@@ -200,6 +200,7 @@ def test_wrong_arguments(stack):
         (lambda: afterglow.Stack("neon_night", device="auto"), "device must be an afterglow.Device, not str"),
         (lambda: afterglow.Stack("neon_night", max_error="small"), "max_error must be a number, not str"),
         (lambda: afterglow.Stack("neon_night", follow="no"), "follow must be a bool, not str"),
+        (lambda: afterglow.Stack("neon_night", max_memory=-1), "max_memory must be a whole number from 0 on, not int"),
         (lambda: afterglow.Stack("neon_night", text=3), "text must be a str, not int"),
         (lambda: stack.run(picture(), frame=[1]), "frame must be a number, not list"),
         (lambda: stack.run(picture(), position=1), r"position must be three numbers \(x, y, z\), not int"),

@@ -31,6 +31,7 @@ T cast(const py::object& value, const std::string& name, const char* what) {
 }
 template <class T>
 constexpr const char* kWhat = std::is_same_v<T, bool>   ? "a bool"
+                              : std::is_unsigned_v<T>   ? "a whole number from 0 on"
                               : std::is_arithmetic_v<T> ? "a number"
                                                         : "a str";
 
