@@ -18,6 +18,7 @@
 #include "apps/command.h"
 #include "apps/output.h"
 #include "core/file.h"
+#include "core/file_descriptor.h"
 #include "core/paths.h"
 #include "core/process.h"
 #include "script/preset.h"
@@ -77,7 +78,7 @@ class Written {
     fs::create_directories(path.parent_path(), ec);
     const int out = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, file.executable ? 0777 : 0666);
     if (out >= 0) made_.push_back(path);
-    if (out >= 0 && write_all(out, file.text)) return {};
+    if (out >= 0 && write_and_close(out, file.text)) return {};
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(errno)), path.string()};
   }
   void discard() const {
@@ -86,14 +87,9 @@ class Written {
   }
 
  private:
-  /// And closes it. On failure errno tells.
-  static bool write_all(int file, std::string_view text) {
-    bool good = true;
-    while (good && !text.empty()) {
-      const ssize_t written = write(file, text.data(), text.size());
-      if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
-      good = written > 0 || errno == EINTR;
-    }
+  /// On failure errno tells.
+  static bool write_and_close(int file, std::string_view text) {
+    const bool good = write_all(file, text);
     const int reason = errno;
     if (close(file) != 0) return false;
     errno = reason;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/ascii.h"
+#include "core/file_descriptor.h"
 #include "core/file_record.h"
 #include "core/temporary.h"
 #include "core/text.h"
@@ -61,15 +62,10 @@ Result<void> write_stream(const fs::path& path, std::string_view content) {
   const int out = open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK);
   if (out < 0) return failed();
   fcntl(out, F_SETFL, O_APPEND);
-  while (!content.empty()) {
-    const ssize_t written = write(out, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const Error error = failed();
-      close(out);
-      return error;
-    }
-    content.remove_prefix(static_cast<std::size_t>(written));
+  if (!write_all(out, content)) {
+    const Error error = failed();
+    close(out);
+    return error;
   }
   return close(out) == 0 ? Result<void>() : failed();
 }

@@ -4,7 +4,12 @@
 
 #include <unistd.h>
 
+#include <string_view>
+
 namespace afterglow {
+
+/// However often it is interrupted, and however few bytes the system takes at once. On failure errno tells.
+bool write_all(int file, std::string_view content);
 
 /// Closes it at its end; numbers below 0 are none.
 class FileDescriptor {

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/file_descriptor.h"
 #include "core/temporary.h"
 
 namespace afterglow {
@@ -19,12 +20,7 @@ namespace {
 bool write_new(const fs::path& path, std::string_view content, const struct stat& old) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file < 0) return false;
-  bool good = true;
-  while (good && !content.empty()) {
-    const ssize_t written = write(file, content.data(), content.size());
-    if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
-    good = written > 0 || errno == EINTR;
-  }
+  bool good = write_all(file, content);
   // Root leaves the file its owner's; others cannot give files away. Before the mode: it takes bits of it.
   const bool given = good && fchown(file, old.st_uid, old.st_gid) == 0;
   static_cast<void>(given);
