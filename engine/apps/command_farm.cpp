@@ -27,11 +27,9 @@ Result<void> report_on(const farm::Job& job, const FarmArguments& a) {
   return {};
 }
 
-/// Of a job that another scheduler has: `what` is left to that one.
 Result<void> check_submitted(const farm::Job& job, const char* what) {
   AFTERGLOW_TRY(const auto submissions, farm::read_submissions(job));
-  if (!submissions.arrays.empty()) return {};
-  return Error{ErrorKind::io, fmt::format("was not submitted to Slurm; {} where it was", what), job.folder.string()};
+  return farm::check_submitted(job, submissions, what);
 }
 
 /// What follows a submission.

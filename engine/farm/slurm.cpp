@@ -325,11 +325,15 @@ Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks
   return all;
 }
 
+Result<void> check_submitted(const Job& job, const Submissions& submissions, const char* what) {
+  if (!submissions.arrays.empty()) return {};
+  return Error{ErrorKind::io, fmt::format("was not submitted to Slurm; {} where it was", what), job.folder.string()};
+}
+
 Result<void> cancel(const Job& job) {
   const FileLock lock(lock_of(job));  // what is being submitted is submitted first, and known
   AFTERGLOW_TRY(Submissions all, read_submissions(job));
-  if (all.arrays.empty())
-    return Error{ErrorKind::io, "was not submitted to Slurm; cancel it where it was", job.folder.string()};
+  AFTERGLOW_CHECK(check_submitted(job, all, "cancel it"));
   all.cancelled = true;
   AFTERGLOW_CHECK(write_submissions(job, all));
   Result<void> first;  // that went wrong; the others are cancelled all the same

@@ -27,6 +27,8 @@ struct Submissions {
 /// Nothing where there is none. Errors: io.
 Result<Submissions> read_submissions(const Job& job);
 Result<void> write_submissions(const Job& job, const Submissions& submissions);
+/// Of a job that another scheduler has, `what` ("cancel it") is left to that one. Errors: io.
+Result<void> check_submitted(const Job& job, const Submissions& submissions, const char* what);
 
 /// The script of a task, for /bin/sh; its first argument is the chunk of task 0.
 std::string task_script(const Job& job);

@@ -242,25 +242,28 @@ class OiioFile : public PictureFile {
         }
   }
 
+  /// Samples of whole pixels, `all` of each, one behind the other, to where they are wanted.
+  template <class Sample>
+  static void hand_out(const std::vector<Sample>& samples, float scale, const Size& size, int all,
+                       const ReadTarget& first, int channels) {
+    for (std::size_t y = 0, i = 0; y < static_cast<std::size_t>(size.height); ++y)
+      for (std::size_t x = 0; x < static_cast<std::size_t>(size.width); ++x, i += static_cast<std::size_t>(all))
+        for (int c = 0; c < channels; ++c)
+          first.base[y * first.row_stride + x * first.pixel_stride + static_cast<std::size_t>(c)] =
+              static_cast<float>(samples[i + static_cast<std::size_t>(first.channel + c)]) / scale;
+  }
+
   Result<void> read_pnm(const ReadTarget& first, int channels) const {
     const DeepPnm& form = *container_.deep_pnm;
     AFTERGLOW_TRY(const std::vector<float> samples, read_deep_pnm(path_, form));
-    const auto all = static_cast<std::size_t>(form.channels);
-    for (std::size_t y = 0, i = 0; y < static_cast<std::size_t>(form.size.height); ++y)
-      for (std::size_t x = 0; x < static_cast<std::size_t>(form.size.width); ++x, i += all)
-        std::copy_n(&samples[i + static_cast<std::size_t>(first.channel)], channels,
-                    first.base + y * first.row_stride + x * first.pixel_stride);
+    hand_out(samples, 1, form.size, form.channels, first, channels);
     return {};
   }
 
   Result<void> read_straight_webp(const ReadTarget& first, int channels) const {
-    const OIIO::ImageSpec& spec = specs_.front();
-    AFTERGLOW_TRY(const std::vector<std::uint8_t> codes, read_webp(path_, {spec.width, spec.height}));
-    for (std::size_t y = 0, i = 0; y < static_cast<std::size_t>(spec.height); ++y)
-      for (std::size_t x = 0; x < static_cast<std::size_t>(spec.width); ++x, i += 4)
-        for (int c = 0; c < channels; ++c)
-          first.base[y * first.row_stride + x * first.pixel_stride + static_cast<std::size_t>(c)] =
-              static_cast<float>(codes[i + static_cast<std::size_t>(first.channel + c)]) / 255;
+    const Size size{specs_.front().width, specs_.front().height};
+    AFTERGLOW_TRY(const std::vector<std::uint8_t> codes, read_webp(path_, size));
+    hand_out(codes, 255, size, 4, first, channels);
     return {};
   }
 
