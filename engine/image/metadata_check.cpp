@@ -19,6 +19,15 @@ constexpr int kDeepestXml = 256;
 
 std::string_view text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
+/// From the TIFF head on.
+Bytes behind_name(Bytes exif) {
+  constexpr std::string_view kName("Exif\0\0", 6);
+  return text_of(exif).starts_with(kName) ? exif.subspan(kName.size()) : exif;
+}
+
+/// Whether it begins as TIFF does, with the order of its bytes.
+bool says_order(Bytes exif) { return text_of(exif).starts_with("II") || text_of(exif).starts_with("MM"); }
+
 /// Directories of EXIF, as deep as they go.
 class Exif {
  public:
@@ -29,13 +38,30 @@ class Exif {
     return first + 2 > bytes_.size() || directory(first, 0);
   }
 
+  /// Of the first directory; none: it says none, or one that there is not.
+  std::optional<int> orientation() const {
+    constexpr std::uint32_t kTag = 0x0112, kShort = 3;
+    const std::uint64_t first = number(4, 4);
+    if (first + 2 > bytes_.size()) return std::nullopt;
+    const std::uint32_t count = number(first, 2);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint64_t entry = first + 2 + i * kEntry;
+      if (entry + kEntry > bytes_.size()) break;
+      if (number(entry, 2) != kTag || number(entry + 2, 2) != kShort) continue;
+      const std::uint32_t value = number(entry + 8, 2);
+      return value >= 1 && value <= 8 ? std::optional(static_cast<int>(value)) : std::nullopt;
+    }
+    return std::nullopt;
+  }
+
  private:
+  static constexpr std::uint64_t kEntry = 12;  // bytes
+
   std::uint32_t number(std::size_t at, std::size_t bytes) const {
     return static_cast<std::uint32_t>(ordered(&bytes_[at], bytes, !little_));
   }
 
   bool directory(std::uint64_t at, int depth) {
-    constexpr std::uint64_t kEntry = 12;
     constexpr std::uint32_t kShort = 3, kLong = 4, kRational = 5, kSigned = 10;
     if (depth > kDeepest || at + 2 > bytes_.size()) return false;
     if (!seen_.insert(at).second) return true;
@@ -79,31 +105,16 @@ std::size_t tag_end(std::string_view xml, std::size_t at) {
 }  // namespace
 
 const char* exif_fault(Bytes exif) {
-  if (text_of(exif).starts_with(std::string_view("Exif\0\0", 6))) exif = exif.subspan(6);
+  exif = behind_name(exif);
   if (exif.size() < 8) return kExif;
   if (exif.size() > kMostExif) return "has more than 1 MiB of EXIF metadata";
-  const std::string_view order = text_of(exif).substr(0, 2);
-  if (order != "II" && order != "MM") return nullptr;
+  if (!says_order(exif)) return nullptr;
   return Exif(exif).sound() ? nullptr : kExif;
 }
 
 std::optional<int> exif_orientation(Bytes exif) {
-  constexpr std::uint32_t kTag = 0x0112, kShort = 3;
-  if (text_of(exif).starts_with(std::string_view("Exif\0\0", 6))) exif = exif.subspan(6);
-  if (exif.size() < 8) return std::nullopt;
-  const std::string_view order = text_of(exif).substr(0, 2);
-  if (order != "II" && order != "MM") return std::nullopt;
-  const auto number = [&](std::size_t at, std::size_t bytes) {
-    return static_cast<std::uint32_t>(ordered(&exif[at], bytes, order == "MM"));
-  };
-  const std::uint64_t first = number(4, 4);
-  if (first + 2 > exif.size()) return std::nullopt;
-  for (std::uint64_t i = 0, entry = first + 2; i < number(first, 2) && entry + 12 <= exif.size(); ++i, entry += 12) {
-    if (number(entry, 2) != kTag || number(entry + 2, 2) != kShort) continue;
-    const std::uint32_t value = number(entry + 8, 2);
-    return value >= 1 && value <= 8 ? std::optional(static_cast<int>(value)) : std::nullopt;
-  }
-  return std::nullopt;
+  exif = behind_name(exif);
+  return exif.size() >= 8 && says_order(exif) ? Exif(exif).orientation() : std::nullopt;
 }
 
 const char* icc_fault(Bytes profile) {
