@@ -6,7 +6,7 @@ return fx.stack {
   name = "Analog film",
   requires = "0.2",
   reference_height = 1080,
-  fx.bloom { mode = "scattering", threshold = 0.2, knee = 1, intensity = 0.1, scatter = 0.5, fade_fireflies = true },
+  fx.bloom { mode = "scattering", threshold = 0.2, knee = 1, intensity = 0.1, scatter = 0.5, fade_fireflies = true, edges = "mirror" },
   fx.halation { intensity = 0.12, radius = 11, threshold = 1.2, clamp = 14 },
   fx.vignette { intensity = 0.2, smoothness = 0.5 },
   fx.curves { blacks = 0.3, highlights = -0.1, red = { -0.12, 0.02, 0.06 }, green = { 0.02, 0, 0.02 }, blue = { 0.2, 0, -0.16 },

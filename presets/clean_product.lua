@@ -6,10 +6,10 @@ return fx.stack {
   name = "Clean product shot",
   requires = "0.2",
   fx.ssao { radius = 0.4, intensity = 0.7, samples = 24 },
-  fx.bloom { mode = "scattering", threshold = 1.2, knee = 0.6, intensity = 0.06, scatter = 0.6, fade_fireflies = true },
+  fx.bloom { mode = "scattering", threshold = 1.2, knee = 0.6, intensity = 0.06, scatter = 0.6, fade_fireflies = true, edges = "mirror" },
   fx.curves { by = "luminance", shadows = 0.12, highlights = -0.08 },
-  fx.color_adjustments { post_exposure = 0.35, contrast = 18, saturation = 16 },
-  fx.tone_mapping { mode = "agx" },
+  fx.color_adjustments { post_exposure = 0.35, contrast = 8 },
+  fx.tone_mapping { mode = "khronos_neutral" },
   fx.smaa {},
   fx.sharpen { intensity = 0.3 },
 }

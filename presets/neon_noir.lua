@@ -8,7 +8,7 @@ return fx.stack {
   requires = "0.2",
   reference_height = 1080,
   fx.depth_fog { density = 0.012, start = 4, color = { 0.02, 0.03, 0.06 }, ambient = 0.8, max_opacity = 0.7, sky = 0.2, scattering = 0.6 },
-  fx.bloom { mode = "scattering", threshold = 1, knee = 0.7, intensity = 0.16, scatter = 0.72, fade_fireflies = true },
+  fx.bloom { mode = "scattering", threshold = 1, knee = 0.7, intensity = 0.16, scatter = 0.72, fade_fireflies = true, edges = "mirror" },
   fx.halation { intensity = 0.1, radius = 10, threshold = 1.5, clamp = 12, color = { 1, 0.16, 0.08 } },
   fx.anamorphic_streaks { threshold = 14, stretch = 0.72, intensity = 0.08, tint = { 0.3, 0.55, 1 } },
   fx.vignette { intensity = 0.32, smoothness = 0.5 },

@@ -105,6 +105,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field x? number[][]     {{offset, weight}, …} along x, offsets in texels of the source; default {{0, 1}}
 ---@field y? number[][]     the same along y
 ---@field taps? number[][]  {{dx, dy, weight}, …} for filters that are no product of x and y; excludes both
+---@field edges? "stretch"|"mirror"  what lies outside of I: its last texels (the default), or its mirror image, which keeps the sum of light that is near an edge
 
 ---@class afterglow
 local fx = {}

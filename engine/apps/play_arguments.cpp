@@ -107,6 +107,14 @@ Result<void> PlayArguments::check() const {
   if (!headless && (count > 0 || fast || real_time || !screenshot.empty()))
     return Error{ErrorKind::usage, "--count, --fast, --real-time and --screenshot go with --headless",
                  "afterglow play"};
+  for (const auto& [given, name] : {std::pair(full_screen, "--full-screen"),
+                                    {!geometry.empty(), "--geometry"},
+                                    {paused, "--paused"},
+                                    {ui_scale.has_value(), "--ui-scale"},
+                                    {!exports.empty(), "--export"}})
+    if (headless && given)
+      return Error{ErrorKind::usage, "is of the window, and --headless has none", name, 0,
+                   "--screenshot FILE for a frame, `afterglow run` for more"};
   if (headless && shown_on.any())
     return Error{ErrorKind::usage, "--view-ocio and --view-icc are of the window: what is written stays without them",
                  "afterglow play"};

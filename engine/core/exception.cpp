@@ -24,7 +24,7 @@ bool is_lack_of_threads(const std::exception& exception) {
 
 std::string exception_text(const std::exception& exception) {
   if (is_lack_of_memory(exception)) return "out of memory";
-  if (is_lack_of_threads(exception)) return "no more threads can be started (ulimit -u, or pids of the control group)";
+  if (is_lack_of_threads(exception)) return kNoMoreThreads;
   std::string text = exception.what();
   std::ranges::replace(text, '\n', ' ');
   text = trim(text);

@@ -9,6 +9,10 @@
 
 namespace afterglow {
 
+/// What a limit on threads is told with.
+inline constexpr const char* kNoMoreThreads =
+    "no more threads can be started (ulimit -u, or pids of the control group)";
+
 /// What the exception of a library says, as house messages are: one line without a full stop; "out of memory" for
 /// std::bad_alloc.
 std::string exception_text(const std::exception& exception);

@@ -8,6 +8,7 @@ namespace afterglow {
 std::string Filter::text() const {
   static constexpr const char* kNames[] = {"nearest", "linear", "cubic_bspline"};
   std::string out = kNames[static_cast<int>(interpolation)];
+  if (edges == Edges::mirror) out += " mirror";
   if (!taps.empty()) {
     for (const auto& t : taps) out += fmt::format(" ({},{}):{}", t.dx, t.dy, t.weight);
     return out;

@@ -11,6 +11,10 @@ namespace afterglow {
 /// four of the cubic B-spline (which blurs).
 enum class Interpolation { nearest, linear, cubic_bspline };
 
+/// What lies beyond the edges of the source: its edge texels, or the picture mirrored there (held at three times its
+/// size).
+enum class Edges { stretch, mirror };
+
 struct Tap {
   double offset = 0;  ///< texels of the source
   double weight = 1;
@@ -24,13 +28,14 @@ struct Tap2d {
 };
 
 /// out(X, Y) = Σ weight · I(px + dx, py + dy), where px = (X + ½)·n_src/n_dst in texels (a texel centre is at i + ½), I
-/// is the source under `interpolation`, and reads outside are clamped to the edge texel. The taps are the outer product
-/// of `x` and `y`, or `taps` when that is not empty. Weights are used as given, never renormalised.
+/// is the source under `interpolation` with its `edges`. The taps are the outer product of `x` and `y`, or `taps` when
+/// that is not empty. Weights are used as given, never renormalised.
 struct Filter {
   Interpolation interpolation = Interpolation::linear;
   std::vector<Tap> x{Tap{}};
   std::vector<Tap> y{Tap{}};
   std::vector<Tap2d> taps{};
+  Edges edges = Edges::stretch;
   friend bool operator==(const Filter&, const Filter&) = default;
 
   bool separable() const { return taps.empty(); }

@@ -168,6 +168,22 @@ thread_local bool is_alone = false;
 
 void loop_alone() { is_alone = true; }
 
+bool can_start_threads(std::size_t count) {
+  std::atomic<bool> all = false;
+  std::vector<std::thread> threads;
+  bool started = true;
+  try {
+    threads.reserve(count);
+    while (threads.size() < count) threads.push_back(quiet_thread([&] { all.wait(false); }));
+  } catch (const std::exception&) {
+    started = false;
+  }
+  all = true;
+  all.notify_all();
+  for (std::thread& thread : threads) thread.join();
+  return started;
+}
+
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work) {
   if (count > 1 && !is_alone && processors() > 1) {
     Loop loop{work, count, std::min(count, processors()) - 1};

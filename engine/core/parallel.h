@@ -20,6 +20,10 @@ void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& w
 /// From now on nobody helps with the loops of this thread: for threads that give way to others.
 void loop_alone();
 
+/// Can so many more threads run at a time? They begin and end meanwhile. For libraries that start their own and wait
+/// for ever, or end the program, where a limit forbids it (ulimit -u and -v, pids of a control group).
+bool can_start_threads(std::size_t count);
+
 /// Ranges of `parallel_rows` at most, and so threads.
 inline constexpr int kMostRanges = 16;
 

@@ -129,6 +129,12 @@ bool is_join(const Job& job, const ArrayPlan& plan) {
   return task && job.is_join(plan.base + *task);
 }
 
+std::vector<std::string> cancel_words(const SlurmArray& array) {
+  std::vector<std::string> words{"scancel", "--quiet", array.id};
+  add_cluster(words, array.cluster);
+  return words;
+}
+
 /// Arrays with chunks that wait or run. A join that waits for them already is taken back.
 Result<std::vector<std::string>> arrays_before_the_join(const Job& job, const Submissions& all) {
   std::set<std::string> live;
@@ -140,9 +146,7 @@ Result<std::vector<std::string>> arrays_before_the_join(const Job& job, const Su
       live.insert(array.id);
       continue;
     }
-    std::vector<std::string> words{"scancel", "--quiet", array.id};
-    add_cluster(words, array.cluster);
-    static_cast<void>(run_process(words));
+    static_cast<void>(run_process(cancel_words(array)));
   }
   return std::vector<std::string>(live.begin(), live.end());
 }
@@ -315,11 +319,8 @@ Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks
       noted = write_submissions(job, all);
     }
     if (array && noted) continue;
-    for (std::size_t i = before; i < all.arrays.size(); ++i) {
-      std::vector<std::string> words{"scancel", all.arrays[i].id};
-      add_cluster(words, all.arrays[i].cluster);
-      static_cast<void>(run_process(words));
-    }
+    for (std::size_t i = before; i < all.arrays.size(); ++i)
+      static_cast<void>(run_process(cancel_words(all.arrays[i])));
     return array ? std::move(noted).error() : std::move(array).error();
   }
   return all;
@@ -338,9 +339,7 @@ Result<void> cancel(const Job& job) {
   AFTERGLOW_CHECK(write_submissions(job, all));
   Result<void> first;  // that went wrong; the others are cancelled all the same
   for (const auto& array : all.arrays) {
-    std::vector<std::string> words{"scancel", "--quiet", array.id};
-    add_cluster(words, array.cluster);
-    const auto ended = run_process(words);
+    const auto ended = run_process(cancel_words(array));
     if (!ended) return ended.error();
     // An array that Slurm has forgotten has ended.
     if (ended->code != 0 && ended->err.find("Invalid job id") == std::string::npos && first)

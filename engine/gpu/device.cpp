@@ -4,7 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <thread>
 
+#include "core/exception.h"
+#include "core/parallel.h"
 #include "gpu/device_list.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
@@ -28,7 +33,21 @@ bool can_store_few_channels(const VulkanFunctions& vk, VkPhysicalDevice device) 
   return features_of(vk, device).shaderStorageImageExtendedFormats;
 }
 
+/// A driver that runs on the processors has a thread for each of them, and waits for ever for one that could not be
+/// started.
+Result<void> check_threads(const DeviceInfo& info) {
+  if (info.type != "cpu") return {};
+  constexpr long kMost = 32;  // that Mesa's driver starts
+  const char* asked = std::getenv("LP_NUM_THREADS");
+  const long wanted = asked ? std::atol(asked) : static_cast<long>(std::thread::hardware_concurrency());
+  const long threads = std::clamp(wanted, 0l, kMost) + 1;  // and one for what is submitted
+  if (can_start_threads(static_cast<std::size_t>(threads))) return {};
+  return Error{ErrorKind::device, fmt::format("cannot open device '{}': {}", info.name, kNoMoreThreads), "", 0,
+               fmt::format("{} at a time for its driver; fewer for Mesa's with LP_NUM_THREADS=1", threads)};
+}
+
 Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& chosen, bool present) {
+  AFTERGLOW_CHECK(check_threads(chosen.info));
   const auto extensions = extensions_to_enable(vk, chosen.handle, chosen.info.api_version, present);
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -70,15 +89,18 @@ Result<Opened> open_chosen(const VulkanFunctions& vk, std::vector<DeviceInfo> in
                            const std::vector<PhysicalDevice>& devices, const DeviceOptions& options,
                            Diagnostics& diagnostics) {
   const std::string& choice = options.device;
+  std::optional<Error> failed;  // why the one before could not be opened
   for (;;) {
-    AFTERGLOW_TRY(const std::size_t index, choose_device(infos, choice));
-    auto opened = open_device(vk, devices[index], options.presentation != nullptr);
-    if (opened) return Opened{index, *opened};
+    const auto index = choose_device(infos, choice);
+    if (!index) return failed ? *std::move(failed) : index.error();
+    if (failed) diagnostics.warn(failed->message + "; trying the next one");
+    auto opened = open_device(vk, devices[*index], options.presentation != nullptr);
+    if (opened) return Opened{*index, *opened};
     const bool automatic = choice.empty() || choice == "auto";
     if (!automatic) return std::move(opened).error();
-    diagnostics.warn(opened.error().message + "; trying the next one");
-    infos[index].usable = false;
-    infos[index].why_not = opened.error().message;
+    infos[*index].usable = false;
+    infos[*index].why_not = opened.error().message;
+    failed = std::move(opened).error();
   }
 }
 

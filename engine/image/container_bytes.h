@@ -29,6 +29,12 @@ inline std::uint32_t little_endian(const unsigned char* p, std::size_t bytes) {
   return static_cast<std::uint32_t>(ordered(p, bytes, false));
 }
 
+/// Puts such a number of so many bytes.
+inline void put_ordered(unsigned char* p, std::size_t bytes, std::uint64_t value, bool highest_first) {
+  for (std::size_t i = 0; i < bytes; ++i, value >>= 8)
+    p[highest_first ? bytes - 1 - i : i] = static_cast<unsigned char>(value & 255);
+}
+
 inline Error malformed(const std::filesystem::path& file, std::string why) {
   return Error{ErrorKind::io, std::move(why), file.string()};
 }

@@ -34,6 +34,7 @@ struct ContainerFacts {
     bool limited = false;  ///< samples have the range of video
   };
   std::optional<Codes> codes;
+  std::vector<std::uint8_t> exif;     ///< WebP, whose reader skips its first bytes
   std::vector<std::uint8_t> profile;  ///< ICC, where the reader may not pass it on: PNG, WebP, HEIF and AVIF
 };
 

@@ -28,7 +28,7 @@ void set_dpx_name_and_time(const Picture& picture, const std::string& name, Outp
 }
 
 void pad_dpx_lines(OutputFile& out) {
-  constexpr std::uint64_t kOffsetAt = 4, kFileSizeAt = 16, kLinesAt = 776, kPaddingAt = 812;
+  constexpr std::uint64_t kOffsetAt = 4, kFileSizeAt = 16, kLinesAt = 776;
   std::array<unsigned char, 4> magic{};
   out.seek(0);
   if (!out.read(magic.data(), magic.size())) return;
@@ -40,7 +40,7 @@ void pad_dpx_lines(OutputFile& out) {
   };
   const auto put = [&](std::uint64_t at, std::uint64_t value) {
     std::array<unsigned char, 4> bytes{};
-    for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<unsigned char>(value >> 8 * (big ? 3 - i : i));
+    put_ordered(bytes.data(), bytes.size(), value, big);
     out.seek(at);
     out.write(bytes.data(), 4);
   };
@@ -56,7 +56,7 @@ void pad_dpx_lines(OutputFile& out) {
     out.write(bytes.data(), whole);
   }
   put(kFileSizeAt, offset + lines * whole);
-  put(kPaddingAt, whole - line);
+  put(kDpxLinePaddingAt, whole - line);
   out.seek(offset + lines * whole);
 }
 

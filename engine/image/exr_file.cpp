@@ -360,8 +360,10 @@ class ExrFile : public PictureFile {
 void use_exr_threads() {
   static std::once_flag once;
   std::call_once(once, [] {
-    if (Imf::globalThreadCount() == 0)
-      Imf::setGlobalThreadCount(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads));
+    const int wanted = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
+    // A pool of which some cannot be started ends the program.
+    if (Imf::globalThreadCount() == 0 && can_start_threads(static_cast<std::size_t>(wanted)))
+      Imf::setGlobalThreadCount(wanted);
   });
 }
 

@@ -35,12 +35,11 @@ const AVCodec* decoder_of(const AVStream& stream) {
   return avcodec_find_decoder(stream.codecpar->codec_id);
 }
 
-bool is_allowed(const AVCodec& codec) {
-  const std::string list = std::string(",") + kCodecs + ",";
-  return list.find(std::string(",") + codec.name + ",") != std::string::npos;
-}
-
 }  // namespace
+
+bool is_among(const AVCodec& codec, const std::string& names) {
+  return ("," + names + ",").find(std::string(",") + codec.name + ",") != std::string::npos;
+}
 
 std::optional<Error> FfmpegInput::given_up() const {
   std::optional<Error> out = bytes_->given_up();
@@ -145,7 +144,7 @@ Result<void> FfmpegInput::choose_stream() {
     container_->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
   const AVCodecParameters& parameters = *stream().codecpar;
   codec_ = decoder_of(stream());
-  if (!codec_ || !is_allowed(*codec_))
+  if (!codec_ || !is_among(*codec_, kCodecs))
     return failed(fmt::format("is a video whose codec is not read ({})", avcodec_get_name(parameters.codec_id)));
   if (parameters.width < 1 || parameters.height < 1)
     return failed("is a video that does not say how large it is (truncated?)");

@@ -16,6 +16,9 @@
 
 namespace afterglow {
 
+/// By FFmpeg's names of codecs, with commas between them.
+bool is_among(const AVCodec& codec, const std::string& names);
+
 /// Not thread-safe.
 class FfmpegInput {
  public:

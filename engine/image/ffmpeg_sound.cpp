@@ -41,11 +41,6 @@ struct SwrDeleter {
 /// Files of floats hold anything.
 float held_sample(float sample) { return std::isnan(sample) ? 0 : std::clamp(sample, -1.0f, 1.0f); }
 
-bool is_allowed(const AVCodec& codec) {
-  const std::string list = std::string(",") + kCodecs + ",";
-  return list.find(std::string(",") + codec.name + ",") != std::string::npos;
-}
-
 class FfmpegSound : public SoundTrack {
  public:
   /// False: there is no sound.
@@ -59,7 +54,7 @@ class FfmpegSound : public SoundTrack {
       container.streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
     const AVStream& stream = *container.streams[stream_];
     const AVCodec* codec = avcodec_find_decoder(stream.codecpar->codec_id);
-    if (!codec || !is_allowed(*codec))
+    if (!codec || !is_among(*codec, kCodecs))
       return Error{
           ErrorKind::io,
           std::string("has sound whose codec is not read (") + avcodec_get_name(stream.codecpar->codec_id) + ")",

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/container_bytes.h"
+#include "image/dpx_header.h"
 
 namespace afterglow {
 namespace {
@@ -88,7 +89,7 @@ Result<std::uint32_t> check_dpx(const std::filesystem::path& file, std::ifstream
   }
   const bool runs = header.number(kElement + 26, 2) == 1;
   if (runs) return malformed(file, "is a run-length encoded DPX, which is not supported");
-  const std::uint32_t offset = header.number(kElement + 28, 4), padding = header.number(kElement + 32, 4);
+  const std::uint32_t offset = header.number(kElement + 28, 4), padding = header.number(kDpxLinePaddingAt, 4);
   AFTERGLOW_CHECK(check_pixels(file, size, offset, lines, line, padding));
   // Lines begin at words of 32 bits, which the reader does not know, and few writers tell of.
   const std::uint64_t words = (line + 3) / 4 * 4;

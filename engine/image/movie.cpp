@@ -78,6 +78,7 @@ class MovieFrameFile : public PictureFile {
     facts.bits = movie.bits;
     facts.floating = movie.floating;
     facts.orientation = parts_.front().orientation;
+    facts.had_profile = movie_->container_ && !movie_->container_->profile.empty();
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
         facts.color_channels[i] = parts_.front().channels[static_cast<std::size_t>(color.channels[i])];
@@ -150,15 +151,17 @@ Result<std::shared_ptr<MovieSource>> open_source(const MovieRequest& request) {
 }  // namespace
 
 Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, const SizeLimits& limits,
-                                           Diagnostics& diagnostics) {
+                                           Diagnostics& diagnostics, const ContainerFacts* checked) {
   std::shared_ptr<Movie> movie(new Movie());
   movie->file_ = file;
   AFTERGLOW_TRY(const Patience patience, patience_of_process());
   const std::string format = movie_format(file);
   AFTERGLOW_TRY(movie->source_, open_source({file, format, limits, patience}));
-  if (format == "apng")
-    if (auto container = check_container(file))  // one that is cut off is told of, and taken for sRGB
+  if (format == "apng" || format == "webp") {
+    auto container = checked ? Result(*checked) : check_container(file);
+    if (container)  // one that is cut off is told of, and taken for sRGB
       movie->container_ = std::make_shared<const ContainerFacts>(*std::move(container));
+  }
   tell(*movie, diagnostics);
   return movie;
 }

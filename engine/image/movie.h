@@ -25,8 +25,9 @@ class Movie {
   /// Reads the file once, for an index of its frames. Notes what is assumed where it says nothing, warns of what is
   /// damaged or missing. Errors: io (no video that can be read, with what can be done about it; sides beyond the
   /// limits; no bytes come, see core/patience.h), interrupted (give_up_waiting), usage (AFTERGLOW_INPUT_TIMEOUT).
+  /// `checked`: what the file's own head says, where somebody has looked at it already.
   static Result<std::shared_ptr<Movie>> open(const std::filesystem::path& file, const SizeLimits& limits,
-                                             Diagnostics& diagnostics);
+                                             Diagnostics& diagnostics, const ContainerFacts* checked = nullptr);
 
   /// Of frames that somebody has already; `name` stands for a file.
   static std::shared_ptr<Movie> of(const std::filesystem::path& name, std::shared_ptr<MovieSource> source);
@@ -47,7 +48,7 @@ class Movie {
   Movie() = default;
   std::filesystem::path file_;
   std::shared_ptr<MovieSource> source_;
-  std::shared_ptr<const ContainerFacts> container_;  ///< of a PNG that moves: of its colours FFmpeg says nothing
+  std::shared_ptr<const ContainerFacts> container_;  ///< of a PNG or WebP that moves: no decoder tells its colours
   friend class MovieFrameFile;
 };
 

@@ -126,7 +126,8 @@ void fill_in(MovieFacts& facts) {
   take(color.primaries, primaries_said, srgb ? 1 : with_matrix.value_or(!small ? 1 : sixty ? 6 : 5), "primaries");
   take(color.transfer, is_known_transfer(color.transfer), srgb ? 13 : 1, "transfer");
   const bool wide = color.primaries == 9;
-  if (!taken.empty())
+  const bool usual = color.rgb && color.picture;  // sRGB, as that of any picture; its own chunks say more
+  if (!taken.empty() && !usual)
     facts.notes.push_back(fmt::format("does not say its {}; {} is taken", join(taken, ", "),
                                       srgb                            ? "sRGB"
                                       : wide                          ? "BT.2020, as the rest,"

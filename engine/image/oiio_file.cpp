@@ -13,7 +13,9 @@
 #include "core/file.h"
 #include "core/saturated.h"
 #include "core/text.h"
+#include "image/container_bytes.h"
 #include "image/container_color.h"
+#include "image/dpx_header.h"
 #include "image/heif_check.h"
 #include "image/input_space.h"
 #include "image/oiio_metadata.h"
@@ -155,20 +157,19 @@ class OiioFile : public PictureFile {
 
   /// A DPX whose header tells of the bytes behind its lines.
   Result<std::vector<std::uint8_t>> with_line_padding(std::size_t most) const {
-    constexpr std::size_t kEndOfLinePadding = 812;
     AFTERGLOW_TRY(const std::string text, read_file(path_, most));
     std::vector<std::uint8_t> bytes(text.begin(), text.end());
-    if (bytes.size() < kEndOfLinePadding + 4) return failed("is truncated");
+    if (bytes.size() < kDpxLinePaddingAt + 4) return failed("is truncated");
     const bool big = bytes[0] == 'S';
-    for (std::size_t i = 0; i < 4; ++i) bytes[kEndOfLinePadding + i] = 0;
-    bytes[kEndOfLinePadding + (big ? 3 : 0)] = static_cast<std::uint8_t>(container_.line_padding);  // below 4
+    put_ordered(&bytes[kDpxLinePaddingAt], 4, container_.line_padding, big);
     return bytes;
   }
 
   Result<void> add_parts(const SizeLimits& limits) {
     const bool pages = format_ == "tiff";
     for (std::size_t i = 0; i < (pages ? kMaxParts : 1) && input_->seek_subimage(static_cast<int>(i), 0); ++i) {
-      const OIIO::ImageSpec spec = input_->spec();
+      OIIO::ImageSpec spec = input_->spec();
+      add_exif(container_.exif, spec);
       FilePart part;
       part.data_window = {spec.x, spec.y, spec.width, spec.height};
       part.display_window = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};

@@ -4,6 +4,11 @@
 #include "image/kept_values.h"
 #include "image/time_code.h"
 
+// The header of OpenImageIO that declares it (tiffutils) wants those of libtiff.
+OIIO_NAMESPACE_BEGIN
+OIIO_API bool decode_exif(string_view exif, ImageSpec& spec);
+OIIO_NAMESPACE_END
+
 namespace afterglow {
 namespace {
 
@@ -83,6 +88,10 @@ void correct_jpeg_shape(Metadata& metadata) {
   if (!(text.starts_with("in") || text.starts_with("cm")) || !(x > 0 && y > 0)) return;
   std::erase_if(metadata, [&](const MetadataEntry& entry) { return entry.name == kShape; });
   if (x != y) metadata.push_back({kShape, y / x});
+}
+
+void add_exif(std::span<const std::uint8_t> exif, OIIO::ImageSpec& spec) {
+  if (!exif.empty()) OIIO::decode_exif({reinterpret_cast<const char*>(exif.data()), exif.size()}, spec);
 }
 
 OIIO::ParamValueList param_list(const Metadata& metadata) {

@@ -2,7 +2,11 @@
 // Metadata between OpenImageIO's lists and the general form.
 #pragma once
 
+#include <OpenImageIO/imageio.h>
 #include <OpenImageIO/paramlist.h>
+
+#include <cstdint>
+#include <span>
 
 #include "image/metadata.h"
 
@@ -12,6 +16,9 @@ Metadata metadata_of(const OIIO::ParamValueList& list);
 /// Of a JPEG: where the two resolutions are dots in an inch or a centimetre, a pixel's shape is that of their
 /// distances. OpenImageIO 2.4 takes them for its width and height, as they are without a unit.
 void correct_jpeg_shape(Metadata& metadata);
+
+/// What a block of EXIF says, which has been checked (metadata_check.h); empty: nothing.
+void add_exif(std::span<const std::uint8_t> exif, OIIO::ImageSpec& spec);
 
 OIIO::ParamValueList param_list(const Metadata& metadata);
 

@@ -66,7 +66,7 @@ Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& f
   AFTERGLOW_CHECK(check_room(file, container.least_file_bytes));
   if (container.kind != ContainerFacts::Kind::jpeg && !movie_format(file).empty()) {
     Diagnostics quiet;  // whoever wants to know opens the movie
-    AFTERGLOW_TRY(auto movie, Movie::open(file, limits, quiet));
+    AFTERGLOW_TRY(auto movie, Movie::open(file, limits, quiet, &container));
     return Movie::frame(std::move(movie), 0);
   }
   const std::string format = picture_format(file);

@@ -104,7 +104,7 @@ const char* png_metadata_fault(const std::string& type, std::ifstream& in, std::
 
 Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size,
                         ContainerFacts& facts) {
-  constexpr std::size_t kHead = 6;  // "Exif\0\0", which some programs write: the reader skips it, whatever it is
+  constexpr std::size_t kName = 6;  // "Exif\0\0", which some programs write: the reader skips it, whatever it is
   for (std::uint64_t at = 12; at + 8 <= size;) {
     const Buffer head = bytes_at(in, at, 8);
     if (head.size() < 8) break;
@@ -115,9 +115,11 @@ Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, st
     if (type == "ICCP" && facts.profile.empty()) facts.profile = bytes_at(in, at + 8, length);
     if (type == "EXIF") {
       const Buffer chunk = bytes_at(in, at + 8, length);
-      const Bytes behind = Bytes(chunk).subspan(std::min(chunk.size(), kHead));
-      if (const char* why = exif_fault(behind)) return malformed(file, why);
+      const Bytes behind = Bytes(chunk).subspan(std::min(chunk.size(), kName));
+      for (const Bytes bytes : {behind, Bytes(chunk)})  // as the reader takes it, and as it is
+        if (const char* why = exif_fault(bytes)) return malformed(file, why);
       facts.orientation = exif_orientation(chunk);
+      facts.exif = chunk;
     }
     at += 8 + length + (length & 1);
   }

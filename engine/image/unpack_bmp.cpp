@@ -59,10 +59,6 @@ bool unpack_runs(Bytes runs, bool nibbles, Lines& lines) {
   return lines.y >= lines.height;  // without its end mark, as some write it
 }
 
-void put_little_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
-  for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
-}
-
 }  // namespace
 
 Result<std::optional<std::vector<std::uint8_t>>> unpack_bmp(const std::filesystem::path& file, std::uint64_t most) {
@@ -96,13 +92,14 @@ Result<std::optional<std::vector<std::uint8_t>>> unpack_bmp(const std::filesyste
     out.insert(out.end(), in.begin() + static_cast<std::ptrdiff_t>(table),
                in.begin() + static_cast<std::ptrdiff_t>(end));
   out.resize(kHead + 4 * 256);
-  put_little_endian(out, 2, static_cast<std::uint32_t>(out.size() + lines.codes.size()));
-  put_little_endian(out, 10, static_cast<std::uint32_t>(out.size()));
-  put_little_endian(out, 14, 40);
+  const auto put = [&](std::size_t at, std::uint64_t value) { put_ordered(&out[at], 4, value, false); };
+  put(2, out.size() + lines.codes.size());
+  put(10, out.size());
+  put(14, 40);
   out[28] = 8;  // bits of a code
-  put_little_endian(out, 30, 0);
-  put_little_endian(out, 34, static_cast<std::uint32_t>(lines.codes.size()));
-  put_little_endian(out, 46, 256);
+  put(30, 0);
+  put(34, lines.codes.size());
+  put(46, 256);
   out.insert(out.end(), lines.codes.begin(), lines.codes.end());
   return std::optional(std::move(out));
 }

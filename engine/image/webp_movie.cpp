@@ -39,7 +39,7 @@ bool cut_to_whole_chunks(std::string& bytes) {
   }
   const bool cut = end < told;
   bytes.resize(end);
-  for (std::size_t i = 0; i < 4; ++i) bytes[4 + i] = static_cast<char>((end - kChunkHead) >> (8 * i) & 255);
+  put_ordered(reinterpret_cast<unsigned char*>(&bytes[4]), 4, end - kChunkHead, false);
   return cut;
 }
 
@@ -86,8 +86,6 @@ class WebpMovie : public MovieSource {
     AFTERGLOW_CHECK(check_sides({0, 0, facts_.size.width, facts_.size.height}, "canvas", request.limits, request.file));
     facts_.color = {.primaries = 1, .transfer = 13, .matrix = 0, .full_range = true, .rgb = true, .picture = true};
     facts_.time_base = {1, 1000};
-    if ((flags & ICCP_FLAG) != 0)
-      facts_.notes.emplace_back("its ICC profile is not read; its colours are taken for sRGB");
     const long long end = add_frames(*demuxer);
     if (facts_.pts.empty()) return Error{ErrorKind::io, "has no frame (truncated?)"};
     const auto frames = static_cast<int>(facts_.pts.size());

@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -225,7 +226,11 @@ ReadAhead::ReadAhead(Read read, const ReadAheadOptions& options, std::function<v
   state_->read = std::move(read);
   state_->options = options;
   state_->arrived = std::move(arrived);
-  for (int i = 0; i < std::max(options.threads, 1); ++i) state_->threads.emplace_back([this] { state_->run(); });
+  try {
+    for (int i = 0; i < std::max(options.threads, 1); ++i) state_->threads.emplace_back([this] { state_->run(); });
+  } catch (const std::system_error&) {  // no more threads to be had: those that run read
+    if (state_->threads.empty()) throw;
+  }
 }
 
 ReadAhead::~ReadAhead() {

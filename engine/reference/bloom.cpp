@@ -18,9 +18,10 @@ Size half(Size size) { return {size.width / 2, size.height / 2}; }
 
 /// Bilinear sample of `source` at the centre of pixel (x, y) of a target of `size`, plus an offset in texels of the
 /// source.
-Rgba fetch(const DoubleImage& source, Size size, int x, int y, double dx = 0, double dy = 0) {
+Rgba fetch(const DoubleImage& source, Size size, int x, int y, double dx = 0, double dy = 0,
+           Edges edges = Edges::stretch) {
   return sample_linear(source, source_position(x, source.width, size.width) + dx,
-                       source_position(y, source.height, size.height) + dy);
+                       source_position(y, source.height, size.height) + dy, edges);
 }
 
 /// Pixel by pixel f(up, high) on colours; alpha of high.
@@ -96,30 +97,30 @@ DoubleImage bloom_prefilter_fireflies(const DoubleImage& source, const BloomThre
   });
 }
 
-DoubleImage bloom_horizontal(const DoubleImage& source) {
+DoubleImage bloom_horizontal(const DoubleImage& source, Edges edges) {
   const Size size = half(source.size());
   return generate(size, [&](int x, int y) {
     Rgba sum(0);
-    for (int i = -4; i <= 4; ++i) sum += kHalving[glm::abs(i)] * fetch(source, size, x, y, 2.0 * i, 0);
+    for (int i = -4; i <= 4; ++i) sum += kHalving[glm::abs(i)] * fetch(source, size, x, y, 2.0 * i, 0, edges);
     return sum;
   });
 }
 
-DoubleImage bloom_vertical(const DoubleImage& source) {
+DoubleImage bloom_vertical(const DoubleImage& source, Edges edges) {
   const Size size = source.size();
   return generate(size, [&](int x, int y) {
     Rgba sum = kVerticalWeights[0] * source.at(x, y);
     for (int i = 1; i <= 2; ++i)
-      sum += kVerticalWeights[i] *
-             (fetch(source, size, x, y, 0, -kVerticalOffsets[i]) + fetch(source, size, x, y, 0, kVerticalOffsets[i]));
+      sum += kVerticalWeights[i] * (fetch(source, size, x, y, 0, -kVerticalOffsets[i], edges) +
+                                    fetch(source, size, x, y, 0, kVerticalOffsets[i], edges));
     return sum;
   });
 }
 
-DoubleImage bloom_up(const DoubleImage& low, Size size, bool bicubic) {
+DoubleImage bloom_up(const DoubleImage& low, Size size, bool bicubic, Edges edges) {
   return generate(size, [&](int x, int y) {
     const double px = source_position(x, low.width, size.width), py = source_position(y, low.height, size.height);
-    return bicubic ? sample_bspline(low, px, py) : sample_linear(low, px, py);
+    return bicubic ? sample_bspline(low, px, py, edges) : sample_linear(low, px, py, edges);
   });
 }
 
@@ -165,8 +166,8 @@ BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
 
   const std::size_t levels = sizes.size() - 1;
   for (std::size_t i = 0; i < levels; ++i) {
-    out.horizontal.push_back(bloom_horizontal(i == 0 ? out.prefilter : out.vertical.back()));
-    out.vertical.push_back(bloom_vertical(out.horizontal.back()));
+    out.horizontal.push_back(bloom_horizontal(i == 0 ? out.prefilter : out.vertical.back(), settings.edges));
+    out.vertical.push_back(bloom_vertical(out.horizontal.back(), settings.edges));
   }
 
   out.up.resize(levels - 1);
@@ -174,13 +175,13 @@ BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   const DoubleImage* low = &out.vertical.back();
   for (std::size_t i = levels - 1; i-- > 0;) {
     const DoubleImage& high = out.vertical[i];
-    out.up[i] = bloom_up(*low, high.size(), settings.bicubic_upsampling);
+    out.up[i] = bloom_up(*low, high.size(), settings.bicubic_upsampling, settings.edges);
     out.combine[i] = settings.mode == BloomMode::additive ? bloom_add(out.up[i], high, 1)
                                                           : bloom_scatter(out.up[i], high, settings.scatter);
     low = &out.combine[i];
   }
 
-  out.final_up = bloom_up(*low, source.size(), settings.bicubic_upsampling);
+  out.final_up = bloom_up(*low, source.size(), settings.bicubic_upsampling, settings.edges);
   out.result =
       settings.mode == BloomMode::additive
           ? bloom_add(out.final_up, source, settings.intensity)

@@ -23,6 +23,7 @@ struct BloomSettings {
   bool fade_fireflies = false;
   int reference_height = 0;  ///< pixels; 0: the pyramid is built on the picture as it is
   double clamp = 0;          ///< the brightest channel that glows in full; 0: any
+  Edges edges = Edges::stretch;
 };
 
 /// The picture as it would be at this height: halved while that leaves at least as much on both sides, then the mean of
@@ -44,12 +45,12 @@ DoubleImage bloom_prefilter(const DoubleImage& source, const BloomThreshold& thr
 /// Half size; five thresholded samples on a diagonal cross, weighted by 1/(luminance + 1).
 DoubleImage bloom_prefilter_fireflies(const DoubleImage& source, const BloomThreshold& threshold);
 /// Halves both axes; Gaussian on x (9 samples, two texels apart).
-DoubleImage bloom_horizontal(const DoubleImage& source);
+DoubleImage bloom_horizontal(const DoubleImage& source, Edges edges = Edges::stretch);
 /// Same size; Gaussian on y (5 samples between texels).
-DoubleImage bloom_vertical(const DoubleImage& source);
+DoubleImage bloom_vertical(const DoubleImage& source, Edges edges = Edges::stretch);
 
 /// `low` enlarged to `size`, bicubic or bilinear.
-DoubleImage bloom_up(const DoubleImage& low, Size size, bool bicubic);
+DoubleImage bloom_up(const DoubleImage& low, Size size, bool bicubic, Edges edges = Edges::stretch);
 /// high + I·up
 DoubleImage bloom_add(const DoubleImage& up, const DoubleImage& high, double intensity);
 /// lerp(high, up, amount)

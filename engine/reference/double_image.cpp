@@ -21,17 +21,17 @@ std::vector<double> interleaved(const DoubleImage& image) {
   return out;
 }
 
-Rgba sample_nearest(const DoubleImage& image, double px, double py) {
-  return image.clamped(static_cast<int>(std::floor(px)), static_cast<int>(std::floor(py)));
+Rgba sample_nearest(const DoubleImage& image, double px, double py, Edges edges) {
+  return image.beyond(static_cast<int>(std::floor(px)), static_cast<int>(std::floor(py)), edges);
 }
 
-Rgba sample_linear(const DoubleImage& image, double px, double py) {
+Rgba sample_linear(const DoubleImage& image, double px, double py, Edges edges) {
   const double tx = px - 0.5, ty = py - 0.5;
   const double ix = std::floor(tx), iy = std::floor(ty);
   const double fx = tx - ix, fy = ty - iy;
   const int x = static_cast<int>(ix), y = static_cast<int>(iy);
-  const Rgba top = (1 - fx) * image.clamped(x, y) + fx * image.clamped(x + 1, y);
-  const Rgba bottom = (1 - fx) * image.clamped(x, y + 1) + fx * image.clamped(x + 1, y + 1);
+  const Rgba top = (1 - fx) * image.beyond(x, y, edges) + fx * image.beyond(x + 1, y, edges);
+  const Rgba bottom = (1 - fx) * image.beyond(x, y + 1, edges) + fx * image.beyond(x + 1, y + 1, edges);
   return (1 - fy) * top + fy * bottom;
 }
 
@@ -40,14 +40,14 @@ glm::dvec4 bspline_weights(double t) {
   return {u * u * u / 6, 2.0 / 3 - t * t + t * t * t / 2, 1.0 / 6 + t / 2 + t * t / 2 - t * t * t / 2, t * t * t / 6};
 }
 
-Rgba sample_bspline(const DoubleImage& image, double px, double py) {
+Rgba sample_bspline(const DoubleImage& image, double px, double py, Edges edges) {
   const double cx = std::floor(px + 0.5), cy = std::floor(py + 0.5);
   const auto wx = bspline_weights(px + 0.5 - cx), wy = bspline_weights(py + 0.5 - cy);
   const int x = static_cast<int>(cx) - 2, y = static_cast<int>(cy) - 2;
   Rgba sum(0);
   for (int j = 0; j < 4; ++j) {
     Rgba row(0);
-    for (int i = 0; i < 4; ++i) row += wx[i] * image.clamped(x + i, y + j);
+    for (int i = 0; i < 4; ++i) row += wx[i] * image.beyond(x + i, y + j, edges);
     sum += wy[j] * row;
   }
   return sum;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/alpha.h"
+#include "core/filter.h"
 #include "core/geometry.h"
 #include "core/parallel.h"
 
@@ -36,6 +37,19 @@ struct DoubleImage {
   const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
   /// The texel, coordinates clamped to the edge.
   const Rgba& clamped(int x, int y) const { return at(glm::clamp(x, 0, width - 1), glm::clamp(y, 0, height - 1)); }
+  /// The texel where the image is mirrored at its edges, up to three times its size; held beyond that.
+  const Rgba& mirrored(int x, int y) const { return at(folded(x, width), folded(y, height)); }
+  const Rgba& beyond(int x, int y, Edges edges) const {
+    return edges == Edges::mirror ? mirrored(x, y) : clamped(x, y);
+  }
+
+ private:
+  static int folded(int i, int n) {
+    if (i < 0) i = -1 - i;
+    if (i >= n) i = 2 * n - 1 - i;
+    if (i < 0) i = -1 - i;
+    return glm::min(i, n - 1);
+  }
 };
 
 /// From interleaved floats. Channels that are missing become 0, alpha 1.
@@ -51,11 +65,11 @@ inline double source_position(int target, int n_src, int n_dst) {
 }
 
 /// The texel that covers (px, py).
-Rgba sample_nearest(const DoubleImage& image, double px, double py);
-/// Bilinear at texel-space position (px, py), clamp to edge.
-Rgba sample_linear(const DoubleImage& image, double px, double py);
-/// Cubic B-spline over the 4×4 texels around (px, py), clamp to edge. Reproduces constants and, away from edges, ramps.
-Rgba sample_bspline(const DoubleImage& image, double px, double py);
+Rgba sample_nearest(const DoubleImage& image, double px, double py, Edges edges = Edges::stretch);
+/// Bilinear at texel-space position (px, py).
+Rgba sample_linear(const DoubleImage& image, double px, double py, Edges edges = Edges::stretch);
+/// Cubic B-spline over the 4×4 texels around (px, py). Reproduces constants and, away from edges, ramps.
+Rgba sample_bspline(const DoubleImage& image, double px, double py, Edges edges = Edges::stretch);
 
 /// Weights of the cubic B-spline for texels c−2 … c+1, t ∈ [0, 1) the position behind the centre of texel c−1.
 glm::dvec4 bspline_weights(double t);

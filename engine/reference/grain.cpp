@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference/grain.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/color.h"
@@ -40,8 +41,7 @@ double spline(double d) {
 
 /// Quadratic B-splines of cells, which lie elsewhere in each frame; the weights are scaled so that their squares add
 /// up to 1.
-Rgba noise(int x, int y, const FilmGrain& s) {
-  if (s.size == 1) return cell_noise(x, y, s);
+Rgba coarse_noise(int x, int y, const FilmGrain& s) {
   const double side = s.size * std::sqrt(2.0 / 3);
   const std::uint32_t key = key_of(s);
   const double px = (x + 0.5 + (key >> 24u) / 16.0) / side, py = (y + 0.5 + (key >> 16u & 255u) / 16.0) / side;
@@ -55,6 +55,15 @@ Rgba noise(int x, int y, const FilmGrain& s) {
       squares += weight * weight;
     }
   return sum / std::sqrt(squares);
+}
+
+/// From 1 to 1.5 pixels the grain of single pixels gives way to that of cells.
+Rgba noise(int x, int y, const FilmGrain& s) {
+  const double share = std::min(2 * (s.size - 1), 1.0);
+  const Rgba fine = cell_noise(x, y, s);
+  if (share == 0) return fine;
+  const Rgba coarse = coarse_noise(x, y, s);
+  return (fine + share * (coarse - fine)) / std::hypot(share, 1 - share);
 }
 
 }  // namespace

@@ -7,14 +7,14 @@ namespace afterglow::reference {
 
 namespace {
 
-Rgba sample(const DoubleImage& image, Interpolation interpolation, double px, double py) {
-  switch (interpolation) {
+Rgba sample(const DoubleImage& image, const Filter& filter, double px, double py) {
+  switch (filter.interpolation) {
     case Interpolation::nearest:
-      return sample_nearest(image, px, py);
+      return sample_nearest(image, px, py, filter.edges);
     case Interpolation::linear:
-      return sample_linear(image, px, py);
+      return sample_linear(image, px, py, filter.edges);
     case Interpolation::cubic_bspline:
-      return sample_bspline(image, px, py);
+      return sample_bspline(image, px, py, filter.edges);
   }
   return Rgba(0);
 }
@@ -33,7 +33,7 @@ DoubleImage resample(const DoubleImage& source, Size size, const Filter& filter)
     const double px = source_position(x, source.width, size.width);
     const double py = source_position(y, source.height, size.height);
     Rgba sum(0);
-    for (const auto& tap : taps) sum += tap.weight * sample(source, filter.interpolation, px + tap.dx, py + tap.dy);
+    for (const auto& tap : taps) sum += tap.weight * sample(source, filter, px + tap.dx, py + tap.dy);
     return sum;
   });
 }

@@ -24,7 +24,8 @@ DoubleImage run_bloom(const DoubleImage& source, const Inputs&, const Settings& 
                         .bicubic_upsampling = s.flag("bicubic_upsampling"),
                         .fade_fireflies = s.flag("fade_fireflies"),
                         .reference_height = s.integer("reference_height"),
-                        .clamp = s.number("clamp")})
+                        .clamp = s.number("clamp"),
+                        .edges = s.is("edges", "mirror") ? Edges::mirror : Edges::stretch})
       .result;
 }
 

@@ -229,9 +229,13 @@ std::vector<SettingSchema> read_setting_types(lua_State* lua, TableReader& table
     const Handle* handle = to_object<Handle>(lua, -1, kSettingKind);
     const std::string shown = read_value(lua, -1).shown();
     lua_pop(lua, 1);
-    if (key.position > 0 || !is_identifier(key.name))
+    if (key.position > 0)
       table.fail(
           failure(fmt::format("{}: a setting needs a name", table.what()), {key.name}, "letters, digits and '_'"));
+    else if (!is_identifier(key.name))
+      table.fail(
+          failure(fmt::format("{}: '{}' cannot be the name of a setting", table.what(), tidy_message(key.name, 60)),
+                  {key.name}, "1 to 64 letters, digits and '_', no digit first"));
     else if (std::ranges::count(taken, key.name) > std::ranges::count(replaceable_keys(), key.name))
       table.fail(failure(fmt::format("{}: no setting may be named '{}', which every entry has", table.what(), key.name),
                          {key.name}));

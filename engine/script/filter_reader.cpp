@@ -52,15 +52,17 @@ std::vector<std::array<double, 4>> read_taps(lua_State* lua, const TableReader& 
   return taps;
 }
 
-Interpolation read_interpolation(TableReader& filter, TableReader& call) {
-  static const std::vector<std::string> names{"nearest", "linear", "cubic_bspline"};
-  const Value given = filter.value("interpolation");
-  if (given.kind == Value::Kind::nothing) return Interpolation::linear;
+/// One of these names, in the order of the enumeration.
+template <typename Choice>
+Choice read_choice(const char* key, Choice usual, const std::vector<std::string>& names, TableReader& filter,
+                   TableReader& call) {
+  const Value given = filter.value(key);
+  if (given.kind == Value::Kind::nothing) return usual;
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (given.kind == Value::Kind::text && given.text == names[i]) return static_cast<Interpolation>(i);
-  call.fail(failure(fmt::format("{}: unknown interpolation {}", filter.what(), given.shown()),
-                    {"filter", "interpolation"}, join(names), nearest_name(given.text, names)));
-  return Interpolation::linear;
+    if (given.kind == Value::Kind::text && given.text == names[i]) return static_cast<Choice>(i);
+  call.fail(failure(fmt::format("{}: unknown {} {}", filter.what(), key, given.shown()), {"filter", key}, join(names),
+                    nearest_name(given.text, names)));
+  return usual;
 }
 
 }  // namespace
@@ -69,16 +71,18 @@ Filter read_filter(lua_State* lua, TableReader& call) {
   Filter result;
   if (!lua_istable(lua, -1)) {
     call.fail(failure(fmt::format("{}: filter = {} is not a filter", call.what(), read_value(lua, -1).shown()),
-                      {"filter"}, "{ interpolation, x, y, taps }, fx.filters.…"));
+                      {"filter"}, "{ interpolation, x, y, taps, edges }, fx.filters.…"));
     return result;
   }
   TableReader filter(lua, -1, call.what() + ": the filter");
-  const std::vector<std::string> known{"interpolation", "taps", "x", "y"};
+  const std::vector<std::string> known{"edges", "interpolation", "taps", "x", "y"};
   for (const auto& key : filter.keys())
     if (std::find(known.begin(), known.end(), key.name) == known.end())
       call.fail(failure(fmt::format("{} has no '{}'", filter.what(), tidy_message(key.name, 60)), {"filter", key.name},
                         join(known), nearest_name(key.name, known)));
-  result.interpolation = read_interpolation(filter, call);
+  result.interpolation =
+      read_choice("interpolation", Interpolation::linear, {"nearest", "linear", "cubic_bspline"}, filter, call);
+  result.edges = read_choice("edges", Edges::stretch, {"stretch", "mirror"}, filter, call);
   const auto has = [&](const char* name) { return filter.value(name).kind != Value::Kind::nothing; };
   if (has("taps") && (has("x") || has("y")))
     call.fail(

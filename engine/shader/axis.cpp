@@ -49,8 +49,8 @@ std::string product(double constant, const std::string& variable) {
   return float_literal(constant) + " * " + variable;
 }
 
-Axis::Axis(char letter, AxisRatio ratio, Interpolation interpolation, int pixels)
-    : letter_(letter), ratio_(ratio), interpolation_(interpolation), pixels_(pixels) {}
+Axis::Axis(char letter, AxisRatio ratio, const Filter& filter, int pixels)
+    : letter_(letter), ratio_(ratio), interpolation_(filter.interpolation), edges_(filter.edges), pixels_(pixels) {}
 
 std::string Axis::name(const char* what, int phase) const { return fmt::format("ag_{}{}{}", letter_, what, phase); }
 
@@ -101,7 +101,8 @@ std::vector<TapTerm> Axis::read(double offset, int pixel) {
 
 std::vector<PlacedTerm> Axis::read_placed(double offset) {
   const int base = phase_for(0);
-  Axis whole_period(letter_, ratio_, interpolation_, period());
+  Axis whole_period = *this;
+  whole_period.pixels_ = period();
   std::map<int, std::vector<double>> columns;
   for (int place = 0; place < period(); ++place) {
     const int carry = split((place + 0.5) * step() - 0.5).first;  // as setup() gives it to the base
@@ -222,6 +223,8 @@ std::string Axis::setup() const {
 std::string Axis::index(TexelKey texel) const {
   const std::string at = sum(base(texel.phase), texel.shift);
   const int first_beyond = ratio_ == AxisRatio::half ? 2 : 1;  // texels 0 … first_beyond−1 belong to the pixel itself
+  if (edges_ == Edges::mirror && (!fixed() || texel.shift < 0 || texel.shift >= first_beyond))
+    return fmt::format("ag_mirrored({}, ag_last.{})", at, letter_);
   if (!fixed()) return fmt::format("clamp({}, 0, ag_last.{})", at, letter_);
   if (texel.shift < 0) return fmt::format("max({}, 0)", at);
   if (texel.shift >= first_beyond) return fmt::format("min({}, ag_last.{})", at, letter_);

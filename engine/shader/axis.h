@@ -47,7 +47,7 @@ struct FetchTerm {
 class Axis {
  public:
   /// `letter`: 'x' or 'y'. `pixels`: how many target pixels an invocation makes along this axis, from ag_pixel on.
-  Axis(char letter, AxisRatio ratio, Interpolation interpolation, int pixels = 1);
+  Axis(char letter, AxisRatio ratio, const Filter& filter, int pixels = 1);
 
   /// Weights are plain numbers.
   bool fixed() const { return ratio_ != AxisRatio::any && pixels_ % period() == 0; }
@@ -61,14 +61,14 @@ class Axis {
   std::vector<PlacedTerm> read_placed(double offset);
   /// Expression: the weight at the pixel's place.
   std::string weight(const std::vector<double>& by_place) const;
-  /// The same through the sampler's interpolation. Not for Interpolation::nearest.
+  /// The same through the sampler's interpolation. Not for Interpolation::nearest, nor for Edges::mirror.
   std::vector<FetchTerm> fetch(double offset);
   /// For a fixed axis: filtered fetches for merged texels, neighbours in pairs.
   std::vector<FetchTerm> fetch_pairs(const std::map<TexelKey, double>& texels) const;
 
   /// Statements that declare what the expressions use. Call after the last read or fetch.
   std::string setup() const;
-  /// Expression: index of a texel, clamped to the image where it could leave it.
+  /// Expression: index of a texel, brought back into the image where it could leave it.
   std::string index(TexelKey texel) const;
 
  private:
@@ -85,6 +85,7 @@ class Axis {
   char letter_;
   AxisRatio ratio_;
   Interpolation interpolation_;
+  Edges edges_;
   int pixels_;
   std::vector<double> fractions_;  ///< of each class, in [0, 1)
 };

@@ -208,7 +208,7 @@ constexpr const char* kLast = "  ivec2 ag_last = ag_source_size - 1;\n";
 constexpr const char* kTexelSize = "  vec2 ag_texel = 1.0 / vec2(ag_source_size);\n";
 
 Result<std::string> separable_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
-  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
+  Axis x('x', ratio_x, filter), y('y', ratio_y, filter);
   auto columns = axis_reads(x, filter.x);
   auto rows = axis_reads(y, filter.y);
   bool sampler = hardware_filter && filter.interpolation != Interpolation::nearest;
@@ -236,7 +236,7 @@ Result<std::string> separable_anchor(const Filter& filter, AxisRatio ratio_x, Ax
 
 /// Free taps: texels that several taps read are read once.
 Result<std::string> free_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
-  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
+  Axis x('x', ratio_x, filter), y('y', ratio_y, filter);
   std::map<std::pair<TexelKey, TexelKey>, Weight> texels;  // y, then x
   for (const auto& tap : filter.taps) {
     const auto across = x.read(tap.dx);
@@ -306,7 +306,7 @@ struct ColumnWeight {
 
 /// Free taps, several rows of the target at once: each texel is read once and added to all rows that it is part of.
 Result<std::string> free_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows) {
-  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation, rows);
+  Axis x('x', ratio_x, filter), y('y', ratio_y, filter, rows);
   std::map<TexelKey, std::map<TexelKey, std::map<int, ColumnWeight>>> lines;  // y → x → row
   std::size_t texels = 0;
   for (const auto& tap : filter.taps) {
@@ -360,7 +360,7 @@ std::map<TexelKey, std::set<TexelKey>> texels_of_rows(const Filter& filter, Axis
 
 /// Free taps through the sampler: one filtered fetch a tap.
 Result<std::string> free_sampler_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
-  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
+  Axis x('x', ratio_x, filter), y('y', ratio_y, filter);
   std::vector<std::pair<std::string, std::string>> reads;
   for (const auto& tap : filter.taps)
     for (const auto& across : x.fetch(tap.dx))
@@ -375,15 +375,15 @@ Result<std::string> free_sampler_anchor(const Filter& filter, AxisRatio ratio_x,
 }  // namespace
 
 bool shares_rows(const Filter& filter, AxisRatio ratio_y, int rows) {
-  return rows > 1 && Axis('y', ratio_y, filter.interpolation, rows).fixed();
+  return rows > 1 && Axis('y', ratio_y, filter, rows).fixed();
 }
 
 std::optional<RowsRead> rows_shared(const Filter& filter, AxisRatio ratio_y, int rows) {
   if (!shares_rows(filter, ratio_y, rows)) return std::nullopt;
-  Axis axis('y', ratio_y, filter.interpolation, rows);
+  Axis axis('y', ratio_y, filter, rows);
   RowsRead read;
   if (!filter.separable()) {
-    Axis x('x', AxisRatio::same, filter.interpolation);
+    Axis x('x', AxisRatio::same, filter);
     const auto reads = [](const auto& lines) {
       int sum = 0;
       for (const auto& [line, columns] : lines) sum += static_cast<int>(columns.size());
@@ -410,7 +410,7 @@ std::optional<RowsRead> rows_shared(const Filter& filter, AxisRatio ratio_y, int
 Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows) {
   AFTERGLOW_CHECK(check(filter));
   if (!filter.separable()) return free_rows(filter, ratio_x, ratio_y, rows);
-  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation, rows);
+  Axis x('x', ratio_x, filter), y('y', ratio_y, filter, rows);
   auto columns = axis_reads(x, filter.x);
   if (columns.size() > kMaxAxisReads || filter.y.size() > kMaxAxisReads)
     return too_many(std::max(columns.size(), filter.y.size()), kMaxAxisReads);
@@ -420,6 +420,7 @@ Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRat
 
 Result<std::string> filter_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
   AFTERGLOW_CHECK(check(filter));
+  hardware_filter = hardware_filter && filter.edges == Edges::stretch;  // as samplers have it
   if (filter.separable()) return separable_anchor(filter, ratio_x, ratio_y, hardware_filter);
   if (hardware_filter && filter.interpolation == Interpolation::linear)
     return free_sampler_anchor(filter, ratio_x, ratio_y);

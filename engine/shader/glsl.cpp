@@ -52,9 +52,19 @@ std::string helper_signature(std::string_view name) {
   return {};
 }
 
+/// What compute shaders have alone: names of GLSL that the compiler does not know elsewhere.
+bool is_of_compute(std::string_view token) {
+  return token == "barrier" || token == "memoryBarrierShared" || token == "groupMemoryBarrier" ||
+         token.starts_with("gl_LocalInvocation") || token.starts_with("gl_WorkGroup") ||
+         token == "gl_GlobalInvocationID" || token == "gl_NumWorkGroups";
+}
+
 /// What an author may do about a message of the compiler, in place of it or behind it.
 std::string advised(std::string message, std::string_view token) {
+  const bool unknown = message.ends_with("undeclared identifier") || message.ends_with("overloaded function found");
+  if (unknown && is_of_compute(token)) return fmt::format("'{}' is for compute shaders (compute_at)", token);
   if (const auto instead = in_glsl(token); !instead.empty()) return message + fmt::format("; write {}", instead);
+  if (message.ends_with("Reserved word")) return fmt::format("'{}' is a word of GLSL; choose another name", token);
   if (message.find("can't modify a uniform") != std::string::npos)
     return "a uniform cannot be written to; copy it into a variable";
   if (message.find("cannot construct this type") != std::string::npos && token == "sampler/image")

@@ -84,9 +84,10 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
   const auto hits = is_safe_name(name) ? path_.find_shader(name + ".glsl") : std::vector<fs::path>{};
   if (hits.empty()) {
     Error error = shader_error("", 0, fmt::format("unknown shader '{}'", name));
-    constexpr std::string_view kExtension = ".glsl";
+    constexpr std::string_view kExtension = ".glsl", kFolder = "shaders/";
     const auto known = names();
-    const std::string plain = name.ends_with(kExtension) ? name.substr(0, name.size() - kExtension.size()) : name;
+    std::string plain = name.ends_with(kExtension) ? name.substr(0, name.size() - kExtension.size()) : name;
+    if (plain.starts_with(kFolder)) plain.erase(0, kFolder.size());
     error.nearest = std::ranges::count(known, plain) > 0 ? plain : nearest_name(plain, known);
     return error;
   }

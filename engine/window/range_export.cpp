@@ -7,7 +7,6 @@
 #include <chrono>
 #include <set>
 
-#include "core/ascii.h"
 #include "core/file.h"
 #include "image/sequence.h"
 
@@ -81,10 +80,14 @@ std::string RangeExport::proposed(Player& player) const {
   const int first = first_picture(player);
   std::string stem = footage.file(first).stem().string();
   if (footage.movie(first)) return stem + "_graded.mp4";
-  // "shot.0012" is "shot" with a number.
-  if (footage.frames() > 1)
-    while (!stem.empty() && (is_digit(stem.back()) || stem.back() == '.' || stem.back() == '_')) stem.pop_back();
-  return stem + (footage.frames() > 1 ? "_graded.####.exr" : "_graded.exr");
+  if (footage.frames() == 1) return stem + "_graded.exr";
+  const FrameNumber number = frame_number(footage.file(first));
+  if (number.digits > 0) {  // "shot.0012" is "shot" with a number
+    std::size_t begin = number.begin;
+    while (begin > 0 && (stem[begin - 1] == '.' || stem[begin - 1] == '_')) --begin;
+    stem.erase(begin, number.end - begin);
+  }
+  return stem + "_graded.####.exr";
 }
 
 std::string RangeExport::range_text(Player& player) const {

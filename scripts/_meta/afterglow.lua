@@ -49,6 +49,7 @@
 ---@field bicubic_upsampling? boolean|afterglow.OfTime  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
 ---@field reference_height? integer|afterglow.Moving  The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is. integer 0…16384 lines, default 0
 ---@field clamp? number|afterglow.Moving  Light that is brighter than this (largest channel, linear) glows as if it were this bright, so that single wild pixels do not white out a picture; for path-traced pictures about 50. 0: no limit. 0…65504, default 0
+---@field edges? "stretch"|"mirror"|afterglow.OfTime  What is taken to lie outside of the picture: its last pixels, which makes light at the edges glow up to four times as much, or its mirror image, with which it glows as everywhere. default "stretch"
 ---@field fade_fireflies? boolean|afterglow.OfTime  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
 ---Blurs the picture as a lens out of focus: bright points become discs or polygons.
@@ -229,7 +230,7 @@
 ---@field clamp? number|afterglow.Moving  No light counts for more than this; linear. 0…1000000, default 200
 ---@field points? integer|afterglow.Moving  star: rays around a light. integer 2…16, default 6
 ---@field angle? number|afterglow.Moving  star, streaks: direction of the first ray; 0 is to the right, 90 up. -360…360 degrees, default 15
----@field size? number|afterglow.Moving  How far light goes, as a share of the picture's height: where a ray has lost 99 %; the extent of the haze. 0.005…2, default 0.25
+---@field size? number|afterglow.Moving  How far light goes, as a share of the picture's height: where a ray has lost 99 %; the extent of the haze, which grows up to about 0.5. 0.005…2, default 0.25
 ---@field dispersion? number|afterglow.Moving  star, streaks: how much longer red rays are than blue ones. 0: rays have the light's own colour. 0…1, default 0.4
 ---@field tint? number[]|string|afterglow.Moving  Colour of the glare. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 
@@ -246,7 +247,7 @@
 ---The red and orange glow around highlights on film.
 ---@class afterglow.settings.halation : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Share of the light that comes back through the film. 0: none. 0…100, default 0.18
----@field radius? number|afterglow.Moving  Distance over which red falls to a third (1/e); green 0.6 and blue 0.4 of it. 0.5…500 px, default 14
+---@field radius? number|afterglow.Moving  Distance over which red falls to a third (1/e); green 0.6 and blue 0.4 of it. It grows from 2 px up to about a fifth of the height. 0.5…500 px, default 14
 ---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light comes back; linear. 0…1000000, default 1
 ---@field clamp? number|afterglow.Moving  No light counts for more than this: film is exposed fully at some point; linear. 0…1000000, default 20
 ---@field color? number[]|string|afterglow.Moving  How much each layer of the film gets of it. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 0.28, 0.06}

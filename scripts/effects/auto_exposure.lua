@@ -7,7 +7,7 @@ local fx = require "afterglow"
 local kBins = 64         -- two of them a texel
 local kNear = 1.5        -- stops from which adaptation slows down
 local kForgotten = 0.01  -- stops: what is left of an earlier difference of four stops after the pre-roll
-local kLongest = 10      -- seconds of pre-roll at most
+local kLongest = 60      -- seconds of pre-roll at most
 
 -- Frames until a start that was four stops off makes no more difference than kForgotten.
 local function pre_roll(g, s)

@@ -36,6 +36,12 @@ local function same_size_blur()
   return { interpolation = "linear", x = taps, y = taps }
 end
 
+-- Filters stretch what lies at the edges of their source unless they are told otherwise.
+local function with_edges(filter, edges)
+  filter.edges = edges
+  return filter
+end
+
 -- Levels of the pyramid for a picture, and whether every size on the way down is half of the one before.
 local function pyramid(s, source)
   local width, height = size_of(s, source)
@@ -59,6 +65,8 @@ end
 
 -- Pixels that light reaches, generously: nine reads two texels apart at each level, and four on the way up.
 local function reach(s, source) return 24 * 2 ^ pyramid(s, source) end
+-- Light whose sum stays has to be that far from the edges, unless the picture is mirrored there.
+local function from_edges(s, source) return s.edges == "mirror" and 0 or reach(s, source) end
 
 local function passes_all(s) return s.threshold == 0 and not s.fade_fireflies end
 local function is_linear(s) return passes_all(s) and s.clamp == 0 and s.intensity <= 1 end
@@ -87,6 +95,8 @@ return fx.effect {
       doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is." },
     clamp = fx.float { min = 0, max = 65504, default = 0,
       doc = "Light that is brighter than this (largest channel, linear) glows as if it were this bright, so that single wild pixels do not white out a picture; for path-traced pictures about 50. 0: no limit." },
+    edges = fx.enum { "stretch", "mirror", default = "stretch",
+      doc = "What is taken to lie outside of the picture: its last pixels, which makes light at the edges glow up to four times as much, or its mirror image, with which it glows as everywhere." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
 
@@ -107,8 +117,8 @@ return fx.effect {
 
   holds = {
     "black", "constant", "mirror", "turn_180",
-    mean = { within = 1e-4, margin = reach, when = function(s, source) return scatters(s) and passes_all(s) and is_even(s, source) end },
-    no_added_light = { within = 1e-4, margin = reach, when = function(s, source) return scatters(s) and is_even(s, source) end },
+    mean = { within = 1e-4, margin = from_edges, when = function(s, source) return scatters(s) and passes_all(s) and is_even(s, source) end },
+    no_added_light = { within = 1e-4, margin = from_edges, when = function(s, source) return scatters(s) and is_even(s, source) end },
     bounded = { when = scatters },
     monotone = { when = function(s) return not s.fade_fireflies end },
     continuous = { slope = function(s, source)
@@ -164,16 +174,16 @@ return fx.effect {
 
     -- Down. A preview's own pixels, blurred as that level would be, are its first level.
     local levels = {}
-    if start > 1 then levels[1] = g:filter { source = image, filter = same_size_blur(), name = ("level[%d]"):format(start - 2) } end
+    if start > 1 then levels[1] = g:filter { source = image, filter = with_edges(same_size_blur(), s.edges), name = ("level[%d]"):format(start - 2) } end
     image = levels[1] or image
     for i = start + 1, #sizes do
-      image = g:filter { source = image, size = sizes[i], filter = fx.filters.gaussian_halving(), name = ("horizontal[%d]"):format(i - 2) }
-      image = g:filter { source = image, size = image, filter = fx.filters.gaussian_vertical(), name = ("vertical[%d]"):format(i - 2) }
+      image = g:filter { source = image, size = sizes[i], filter = with_edges(fx.filters.gaussian_halving(), s.edges), name = ("horizontal[%d]"):format(i - 2) }
+      image = g:filter { source = image, size = image, filter = with_edges(fx.filters.gaussian_vertical(), s.edges), name = ("vertical[%d]"):format(i - 2) }
       levels[#levels + 1] = image
     end
 
     -- Up: from the coarsest level to the finest.
-    local enlarge = s.bicubic_upsampling and fx.filters.bspline() or fx.filters.bilinear()
+    local enlarge = with_edges(s.bicubic_upsampling and fx.filters.bspline() or fx.filters.bilinear(), s.edges)
     local additive = s.mode == "additive"
     for i = #levels - 1, 1, -1 do
       local up = g:filter { source = image, size = levels[i], filter = enlarge, name = ("up[%d]"):format(i - 1) }

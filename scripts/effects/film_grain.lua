@@ -26,9 +26,10 @@ return fx.effect {
   build = function(g, s, source)
     local size = math.max(1, s.size)  -- a preview cannot show finer grain
     local cell = size * math.sqrt(2 / 3)  -- B-splines are wider than their cells: as wide as tents over cells of that size
-    local coarse = math.floor(cell * 64) / 64
+    local whole = math.floor(cell * 64) / 64
+    local coarse = math.min((size - 1) * 2, 1)  -- grain of a pixel each gives way to it, so that nothing jumps
     local key = word_of(word_of(s.seed) + (math.tointeger(math.floor(g.frame)) or 0) & 0xffffffff)
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
-                    size_of_grain = { coarse, cell - coarse }, colored = s.colored, key = key & 0x7fffffff, shift = { (key >> 24) / 16, (key >> 16 & 255) / 16 }, fine = size == 1, grey = s.colored == 0 }
+                    size_of_grain = { whole, cell - whole }, colored = s.colored, key = key & 0x7fffffff, shift = { (key >> 24) / 16, (key >> 16 & 255) / 16 }, coarse = coarse, is_fine = coarse < 1, is_coarse = coarse > 0, grey = s.colored == 0 }
   end,
 }

@@ -19,7 +19,7 @@ return fx.effect {
     clamp = fx.float { min = 0, max = 1e6, default = 200, doc = "No light counts for more than this; linear." },
     points = fx.int { min = 2, max = 16, default = 6, doc = "star: rays around a light." },
     angle = fx.float { min = -360, max = 360, default = 15, unit = "degrees", doc = "star, streaks: direction of the first ray; 0 is to the right, 90 up." },
-    size = fx.float { min = 0.005, max = 2, default = 0.25, doc = "How far light goes, as a share of the picture's height: where a ray has lost 99 %; the extent of the haze." },
+    size = fx.float { min = 0.005, max = 2, default = 0.25, doc = "How far light goes, as a share of the picture's height: where a ray has lost 99 %; the extent of the haze, which grows up to about 0.5." },
     dispersion = fx.float { min = 0, max = 1, default = 0.4, doc = "star, streaks: how much longer red rays are than blue ones. 0: rays have the light's own colour." },
     tint = fx.color { default = { 1, 1, 1 }, doc = "Colour of the glare." },
   },

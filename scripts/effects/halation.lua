@@ -15,7 +15,7 @@ return fx.effect {
   at = "post_process", order = 105, space = "scene",
   settings = {
     intensity = fx.float { min = 0, max = 100, default = 0.18, doc = "Share of the light that comes back through the film. 0: none." },
-    radius = fx.float { min = 0.5, max = 500, default = 14, unit = "px", doc = "Distance over which red falls to a third (1/e); green 0.6 and blue 0.4 of it." },
+    radius = fx.float { min = 0.5, max = 500, default = 14, unit = "px", doc = "Distance over which red falls to a third (1/e); green 0.6 and blue 0.4 of it. It grows from 2 px up to about a fifth of the height." },
     threshold = fx.float { min = 0, max = 1e6, default = 1, doc = "Brightness (largest channel) from which light comes back; linear." },
     clamp = fx.float { min = 0, max = 1e6, default = 20, doc = "No light counts for more than this: film is exposed fully at some point; linear." },
     color = fx.color { default = { 1, 0.28, 0.06 }, doc = "How much each layer of the film gets of it." },

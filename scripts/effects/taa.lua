@@ -4,6 +4,9 @@
 -- temporal supersampling", GDC 2016); the past is read by Catmull and Rom's spline, so that it stays sharp. For noise and shimmer of renders that are not jittered, too.
 local fx = require "afterglow"
 
+-- Frames until less of a start is left than half a code of 8 bits.
+local function pre_roll(s) return math.ceil(math.log(1 / 512) / math.log(s.feedback)) end
+
 return fx.effect {
   name = "taa",
   doc = "Temporal anti-aliasing: steadies noise and shimmering edges over frames, by motion vectors.",
@@ -24,7 +27,7 @@ return fx.effect {
   build = function(g, s, source)
     local depth = g:input("depth")
     local sign = s.direction == "to_previous" and 1 or -1
-    local before = g:history { name = "before", size = source, first = { 0, 0, 0, 0 }, pre_roll = math.min(24, math.ceil(math.log(0.02) / math.log(s.feedback))) }
+    local before = g:history { name = "before", size = source, first = { 0, 0, 0, 0 }, pre_roll = pre_roll(s) }
     local joined = g:pass { shader = "taa/join", source = source, before = before, motion = g:input("motion"), depth = depth or source, has_depth = depth ~= nil,
                             scale = { s.motion_scale[1] * sign, s.motion_scale[2] * sign }, feedback = s.feedback, bounds = s.bounds, name = "join" }
     g:keep(before, joined)

@@ -3,8 +3,9 @@
 #include "lib/color.glsl"
 #include "lib/noise.glsl"
 
-layout(constant_id = 0) const bool fine = true;      // one grain a pixel
-layout(constant_id = 1) const bool grey = true;      // the same grain in all channels
+layout(constant_id = 0) const bool is_fine = true;     // one grain a pixel
+layout(constant_id = 1) const bool grey = true;        // the same grain in all channels
+layout(constant_id = 2) const bool is_coarse = false;  // grain of cells; both: so much of each
 
 uniform float strength;
 uniform float response;
@@ -12,6 +13,7 @@ uniform vec2 size_of_grain;  // side of a cell, pixels: in 64ths, and the rest
 uniform float colored;
 uniform int key;     // a word of the frame and the seed
 uniform vec2 shift;  // where the frame's cells begin, pixels
+uniform float coarse;
 
 // Grey; and, where there is colour, red, green and blue. `row`: word_of(key ^ the cell's row).
 vec4 grain(uint row, int column) {
@@ -39,10 +41,18 @@ vec4 coarse_grain(ivec2 pixel) {
   return (n - kBytesMean) * inversesqrt(squares.x * squares.y);
 }
 
+// What makes the deviation that of one of two kinds of noise that know nothing of each other, where `share` is of the second.
+float deviation_of_one(float share) { return inversesqrt(share * share + (1.0 - share) * (1.0 - share)); }
+
+vec4 noise(ivec2 pixel) {
+  if (!is_fine) return coarse_grain(pixel);
+  vec4 fine = grain(pixel) - kBytesMean;
+  return is_coarse ? (fine + coarse * (coarse_grain(pixel) - fine)) * deviation_of_one(coarse) : fine;
+}
+
 vec4 apply(vec4 color, ivec2 pixel) {
-  vec4 each = kBytesScale * (fine ? grain(pixel) - kBytesMean : coarse_grain(pixel));
-  // Of a grey and a coloured grain that know nothing of each other, with the deviation of one.
-  vec3 n = grey ? each.rrr : lerp(each.rrr, each.gba, colored) * inversesqrt(colored * colored + (1.0 - colored) * (1.0 - colored));
+  vec4 each = kBytesScale * noise(pixel);
+  vec3 n = grey ? each.rrr : lerp(each.rrr, each.gba, colored) * deviation_of_one(colored);
   float less = 1.0 - response * sqrt(clamp(luminance(color.rgb), 0.0, 1.0));
   return vec4(clamp(color.rgb * (1.0 + strength * less * n), 0.0, kMaxLight), color.a);
 }

@@ -45,6 +45,13 @@ void ag_fraction_beyond(inout int base, int rest, int n_target, float high, floa
   g = ((divisor - whole) - part) / divisor;
 }
 
+// The texel that lies at i where the image is mirrored at its edges; held at three times its size.
+int ag_mirrored(int i, int last) {
+  i = i < 0 ? -1 - i : i;
+  i = min(i, 2 * last + 1 - i);
+  return min(i < 0 ? -1 - i : i, last);
+}
+
 // Size of an input, in texels.
 ivec2 image_size(sampler2D image) { return textureSize(image, 0); }
 

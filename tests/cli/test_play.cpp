@@ -77,12 +77,31 @@ TEST_F(Play, APassThatMakesNanIsNamed) {
   EXPECT_FALSE(report().contains("non_finite"));
 }
 
-/// What Ctrl+R takes: a video, and a folder that is not there yet.
+/// What Ctrl+R takes: a video, and a folder that is not there yet. Before any window is opened.
 TEST_F(Play, ExportsGoToVideosAndNewFolders) {
+  const auto of_export = [&](const std::string& to) {
+    return play({"in/shot.0001.exr", "--export", to}, {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+  };
   for (const char* to : {"out.mp4", "graded/", "out.####.png"})
-    EXPECT_EQ(play({"in/shot.0001.exr", "--headless", "--fast", "--export", to}).exit_code, kDone) << to;
+    EXPECT_THAT(of_export(to).err, HasSubstr("cannot open a window")) << to;
   EXPECT_FALSE(fs::exists(path("graded"))) << "nothing was exported";
-  EXPECT_EQ(play({"in/shot.0001.exr", "--headless", "--export", "out.xyz"}).exit_code, kUsage);
+  const Outcome wrong = of_export("out.xyz");
+  EXPECT_EQ(wrong.exit_code, kUsage);
+  EXPECT_THAT(wrong.err, HasSubstr("'.xyz' is not a format that is written"));
+}
+
+TEST_F(Play, WhatIsOfTheWindowIsRefusedWithoutOne) {
+  const auto refused = [&](const std::string& option, const std::vector<std::string>& value) {
+    std::vector<std::string> arguments{"in/shot.0001.exr", "--headless", "--fast", option};
+    arguments.insert(arguments.end(), value.begin(), value.end());
+    const Outcome outcome = play(arguments);
+    EXPECT_EQ(outcome.exit_code, kUsage) << option;
+    EXPECT_THAT(outcome.err, HasSubstr(option + ": error: is of the window")) << option;
+  };
+  refused("--export", {"out.mp4"});
+  refused("--geometry", {"640x480"});
+  refused("--ui-scale", {"2"});
+  for (const char* flag : {"--paused", "--full-screen"}) refused(flag, {});
 }
 
 TEST_F(Play, ByTheClockUntilSoManyWereShown) {

@@ -15,9 +15,10 @@ std::string lua(const BloomSettings& s) {
   return fmt::format(
       "fx.bloom {{ mode = \"{}\", max_iterations = {}, downscale_limit = {}, threshold = {}, knee = {}, intensity = "
       "{}, scatter = {}, "
-      "bicubic_upsampling = {}, fade_fireflies = {}, reference_height = {}, clamp = {} }}",
+      "bicubic_upsampling = {}, fade_fireflies = {}, reference_height = {}, clamp = {}, edges = \"{}\" }}",
       s.mode == BloomMode::additive ? "additive" : "scattering", s.max_iterations, s.downscale_limit, s.threshold,
-      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies, s.reference_height, s.clamp);
+      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies, s.reference_height, s.clamp,
+      s.edges == Edges::mirror ? "mirror" : "stretch");
 }
 
 std::string bloom_image(const char* name, std::size_t i) { return fmt::format("bloom.{}[{}]", name, i); }
@@ -45,24 +46,24 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
   std::size_t levels = 0;
   for (std::string before = "bloom.prefilter"; made.has(bloom_image("vertical", levels));
        before = bloom_image("vertical", levels++)) {
-    EXPECT_TRUE(
-        agrees(made.pixels(bloom_image("horizontal", levels)), bloom_horizontal(made.image(before)), kFullFloat, kRgb))
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("horizontal", levels)), bloom_horizontal(made.image(before), s.edges),
+                       kFullFloat, kRgb))
         << "horizontal " << levels;
     EXPECT_TRUE(agrees(made.pixels(bloom_image("vertical", levels)),
-                       bloom_vertical(made.image(bloom_image("horizontal", levels))), kFullFloat, kRgb))
+                       bloom_vertical(made.image(bloom_image("horizontal", levels)), s.edges), kFullFloat, kRgb))
         << "vertical " << levels;
   }
   std::string low = bloom_image("vertical", levels - 1);
   for (std::size_t i = levels - 1; i-- > 0; low = bloom_image("combine", i)) {
     const auto high = made.image(bloom_image("vertical", i)), up = made.image(bloom_image("up", i));
-    EXPECT_TRUE(agrees(made.pixels(bloom_image("up", i)), bloom_up(made.image(low), high.size(), s.bicubic_upsampling),
-                       kFullFloat, kRgb))
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("up", i)),
+                       bloom_up(made.image(low), high.size(), s.bicubic_upsampling, s.edges), kFullFloat, kRgb))
         << "up " << i;
     const auto combined = s.mode == BloomMode::additive ? bloom_add(up, high, 1) : bloom_scatter(up, high, s.scatter);
     EXPECT_TRUE(agrees(made.pixels(bloom_image("combine", i)), combined, kFullFloat, kRgb)) << "combine " << i;
   }
-  EXPECT_TRUE(
-      agrees(made.pixels("bloom.up"), bloom_up(made.image(low), made.size, s.bicubic_upsampling), kFullFloat, kRgb))
+  EXPECT_TRUE(agrees(made.pixels("bloom.up"), bloom_up(made.image(low), made.size, s.bicubic_upsampling, s.edges),
+                     kFullFloat, kRgb))
       << "last up";
   const auto up = made.image("bloom.up");
   EXPECT_TRUE(agrees(made.result,
@@ -141,6 +142,31 @@ TEST_F(Effects, BloomOfARealFrameAgrees) {
 TEST_F(Effects, BloomOfAnExtremelyLongPictureAgrees) {
   check(random_scene({1021, 9}, 5), {.downscale_limit = 1});
   check(random_scene({4, 700}, 6), {.mode = BloomMode::scattering, .downscale_limit = 1});
+}
+
+TEST_F(Effects, BloomOfAMirroredPictureAgrees) {
+  for (const Size size : kSizes)
+    check(random_scene(size, 15), {.mode = BloomMode::scattering, .downscale_limit = 1, .edges = Edges::mirror});
+  check(random_scene({101, 57}, 16, true), {.bicubic_upsampling = false, .edges = Edges::mirror});
+}
+
+/// A lamp at an edge glows as one in the middle does.
+TEST_F(Effects, MirroredEdgesKeepTheSumOfAGlow) {
+  const auto added = [](int x, int y, const char* edges) {
+    Scene scene{"lamp", DoubleImage(256, 128, Rgba(0, 0, 0, 1)), {}, {}};
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) scene.source.at(x + i, y + j) = Rgba(40, 40, 40, 1);
+    double sum = -40 * 16;
+    const auto made =
+        run_stack(fmt::format("fx.bloom {{ threshold = 0, edges = \"{}\" }}", edges), scene, Way::fused).result;
+    for (std::size_t i = 0; i < made.size(); i += 4) sum += made[i];
+    return sum;
+  };
+  const double middle = added(124, 60, "mirror");
+  EXPECT_NEAR(added(124, 60, "stretch"), middle, 0.15 * middle);
+  for (const auto& [x, y] : {std::pair(0, 60), {252, 60}, {124, 0}, {0, 0}, {252, 124}})
+    EXPECT_NEAR(added(x, y, "mirror"), middle, 1e-4 * middle) << x << "," << y;
+  EXPECT_GT(added(0, 0, "stretch"), 2 * middle);
 }
 
 TEST_F(Effects, BloomAtAReferenceHeightAgrees) {

@@ -31,7 +31,8 @@ std::vector<float> grain_of(double frame, const char* entries = "fx.film_grain {
 TEST_F(Effects, FilmGrainAgrees) {
   agree_everywhere({grained({}), grained({.intensity = 1, .response = 0, .colored = 1, .seed = 7}),
                     grained({.intensity = 0.7, .response = 1, .size = 2.3, .colored = 0.4}),
-                    grained({.size = 1.5, .seed = 2147483647})});
+                    grained({.size = 1.5, .seed = 2147483647}),
+                    grained({.intensity = 1, .response = 0, .size = 1.2, .colored = 1})});
   expect_skipped("fx.film_grain { intensity = 0 }", "intensity is 0");
 }
 
@@ -44,7 +45,8 @@ TEST_F(Effects, FilmGrainDependsOnTheFrameAlone) {
 
 TEST_F(Effects, FilmGrainHasMeanOneAndItsDeviationAtEverySize) {
   for (const char* entries :
-       {"fx.film_grain { intensity = 1, response = 0 }", "fx.film_grain { intensity = 1, response = 0, size = 1.7 }"}) {
+       {"fx.film_grain { intensity = 1, response = 0 }", "fx.film_grain { intensity = 1, response = 0, size = 1.25 }",
+        "fx.film_grain { intensity = 1, response = 0, size = 1.7 }"}) {
     double sum = 0, squares = 0;
     constexpr int kFrames = 8;
     for (int frame = 1; frame <= kFrames; ++frame) {

@@ -48,6 +48,8 @@ Fault file_fault(const std::string& kind, const fs::path& root) {
            {"AFTERGLOW_FAULT_ROOT", root.string()}}};
 }
 
+Fault thread_fault() { return {"threads", {{"LD_PRELOAD", preload(AFTERGLOW_THREAD_PRELOAD)}}}; }
+
 RunOptions FaultTest::options_at(const Fault& fault, long place) const {
   RunOptions options;
   options.program = program_;

@@ -12,7 +12,7 @@ namespace afterglow::test {
 
 using Environment = std::map<std::string, std::string>;
 
-/// What may go wrong, as the three libraries beside this file understand it.
+/// What may go wrong, as the libraries beside this file understand it.
 struct Fault {
   std::string name;  ///< for messages
   Environment environment;
@@ -20,6 +20,7 @@ struct Fault {
 Fault vulkan_fault(const std::string& code);  ///< host, device, lost
 Fault memory_fault();
 Fault file_fault(const std::string& kind, const fs::path& root);
+Fault thread_fault();  ///< places are numbers of threads that run at a time
 
 /// presets/neon_night.lua.
 inline std::string neon_night() { return preset("neon_night.lua").string(); }

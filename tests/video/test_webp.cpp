@@ -2,6 +2,7 @@
 // Animated WebP: frames, times, alpha, damage.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <lcms2.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,28 @@
 
 #include "clips.h"
 #include "core/file.h"
+#include "image/container_bytes.h"
 
 namespace afterglow {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::IsEmpty;
+
+/// Rec.709, a code is light.
+std::string linear_profile() {
+  const cmsCIExyY white{0.3127, 0.329, 1};
+  const cmsCIExyYTRIPLE primaries{{0.64, 0.33, 1}, {0.3, 0.6, 1}, {0.15, 0.06, 1}};
+  cmsToneCurve* straight = cmsBuildGamma(nullptr, 1.0);
+  cmsToneCurve* const curves[] = {straight, straight, straight};
+  cmsHPROFILE profile = cmsCreateRGBProfile(&white, &primaries, curves);
+  cmsUInt32Number size = 0;
+  cmsSaveProfileToMem(profile, nullptr, &size);
+  std::string bytes(size, '\0');
+  cmsSaveProfileToMem(profile, bytes.data(), &size);
+  cmsCloseProfile(profile);
+  cmsFreeToneCurve(straight);
+  return bytes;
+}
 
 class Webp : public Clips {
  protected:
@@ -58,6 +76,30 @@ TEST_F(Webp, AnyFrameIsThatOfTheLosslessOriginal) {
       EXPECT_LT(off, 1e-6f) << frame << (alpha ? " with alpha" : "");  // two ways of a code to light
     }
   }
+}
+
+/// As those of a WebP that does not move.
+TEST_F(Webp, HasTheColoursAndTheOrientationOfItsHead) {
+  const std::string bytes = bytes_of(webp("a.webp", 3, false)), profile = linear_profile();
+  const auto chunk = [](const std::string& type, const std::string& data) {
+    std::string head = type + "____";
+    put_ordered(reinterpret_cast<unsigned char*>(&head[4]), 4, data.size(), false);
+    return head + data + std::string(data.size() % 2, '\0');
+  };
+  const std::string exif("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0", 26);
+  constexpr std::size_t kBehindHead = 30, kFlags = 20;  // RIFF, WEBP, VP8X
+  std::string told = bytes.substr(0, kBehindHead) + chunk("ICCP", profile) + bytes.substr(kBehindHead);
+  told += chunk("EXIF", exif);
+  told[kFlags] = static_cast<char>(told[kFlags] | 0x28);
+  put_ordered(reinterpret_cast<unsigned char*>(&told[4]), 4, told.size() - 8, false);
+  const auto plain = open(path("a.webp")), linear = open(write("b.webp", told));
+  ASSERT_TRUE(plain && linear);
+  const Picture a = Clips::read(plain, 1).value(), b = Clips::read(linear, 1).value();
+  ASSERT_EQ(b.color.size(), (Size{a.color.height, a.color.width})) << "turned";
+  EXPECT_TRUE(b.facts->had_profile);
+  const float* stored = a.color.at(0, a.color.height - 1);  // the lower left is the upper left now
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(srgb_to_linear(b.color.at(0, 0)[c]), stored[c], 1e-4) << c;
+  EXPECT_THAT(messages_, IsEmpty()) << "sRGB needs no word";
 }
 
 TEST_F(Webp, FramesShowForTheirOwnTimes) {

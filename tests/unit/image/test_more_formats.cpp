@@ -1,58 +1,20 @@
 // SPDX-License-Identifier: MIT
-// DPX, Cineon, PAM: codes as stored, and what the files say of them.
+// Targa, BMP, Radiance, TIFF, PNM, PAM, JPEG 2000: codes as stored, and what the files say of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <webp/decode.h>
 
-#include <bit>
 #include <cmath>
 #include <fstream>
 
 #include "core/file.h"
 #include "image/output_format.h"
-#include "image/output_space.h"
-#include "image/writer.h"
 #include "make_files.h"
 #include "temporary_folder.h"
+#include "wedge.h"
 
 namespace afterglow {
 namespace {
 using testing::HasSubstr;
-
-/// Greys whose Cineon codes are 95, 95 + step, …; red, green and blue differ.
-Picture wedge(int width, int height, bool alpha) {
-  Picture picture;
-  picture.color = Image(width, height, 4);
-  const InputSpace& cineon = *find_input_space("cineon").value();
-  for (int i = 0; i < width * height; ++i) {
-    float* pixel = &picture.color.pixels[static_cast<std::size_t>(i) * 4];
-    pixel[3] = alpha ? static_cast<float>(i % 5) / 4 : 1;
-    for (int c = 0; c < 3; ++c)
-      pixel[c] = static_cast<float>(cineon.to_linear((95 + (i * 7 + c * 131) % 900) / 1023.0)) * pixel[3];
-  }
-  picture.has_alpha = alpha;
-  picture.data_window = picture.display_window = {0, 0, width, height};
-  return picture;
-}
-
-/// Rounded to the nearest code, in this type and space.
-WriteOptions with(SampleType type, const OutputSpace* space = nullptr) {
-  WriteOptions options;
-  options.type = type;
-  options.space = space;
-  options.dither = false;
-  return options;
-}
-WriteOptions compressed(const char* compression) {
-  WriteOptions options;
-  options.compression = compression;
-  return options;
-}
-
-Result<void> write(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options = {}) {
-  Diagnostics silent;
-  return write_picture(picture, file, options, silent);
-}
 
 /// Of 2×1 pixels of four bytes, behind a header of `bytes`.
 void write_bytes(const std::filesystem::path& file, std::string bytes, const std::string& pixels) {
@@ -221,72 +183,6 @@ TEST(Pnm, DeepSamplesAreWhatTheyAre) {
   for (const char* most : {"0", "65536"}) EXPECT_TRUE(read(std::string("P6 2 1 ") + most + "\n", six).empty());
 }
 
-TEST(Cineon, HoldsTheCodesWhereTheFormatSays) {
-  const TemporaryFolder folder;
-  const Picture picture = wedge(37, 5, false);
-  ASSERT_TRUE(write(picture, folder / "o.cin"));
-  const std::string bytes = read_file(folder / "o.cin").value();
-  ASSERT_EQ(bytes.size(), 2048u + 37 * 5 * 4);
-  const auto number = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
-    return value;
-  };
-  EXPECT_EQ(number(0), 0x802a5fd7u);
-  EXPECT_EQ(number(4), 2048u);
-  EXPECT_EQ(number(20), bytes.size());
-  for (std::size_t i = 0; i < 37 * 5; ++i)
-    for (int c = 0; c < 3; ++c)
-      ASSERT_EQ(number(2048 + i * 4) >> (22 - 10 * c) & 1023, 95 + (i * 7 + static_cast<unsigned>(c) * 131) % 900);
-}
-
-/// As another library, and the reader, see them.
-TEST(Cineon, ComesBackAsLight) {
-  const TemporaryFolder folder;
-  for (const char* name : {"o.cin", "o.dpx"}) {
-    const Picture picture = wedge(37, 5, false);
-    ASSERT_TRUE(write(picture, folder / name));
-    const Picture back = read_or_fail(folder / name);
-    ASSERT_EQ(back.color.size(), (Size{37, 5}));
-    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
-      ASSERT_NEAR(back.color.pixels[i], picture.color.pixels[i], 1e-4 * (1 + picture.color.pixels[i])) << name << i;
-  }
-}
-
-class Dpx : public testing::TestWithParam<std::tuple<SampleType, bool>> {};
-
-TEST_P(Dpx, HoldsTheCodes) {
-  const auto& [type, wanted_alpha] = GetParam();
-  const bool alpha = wanted_alpha && type != SampleType::uint10;  // which has none
-  const TemporaryFolder folder;
-  const Picture picture = wedge(37, 53, wanted_alpha);
-  ASSERT_TRUE(write(picture, folder / "o.dpx", with(type)));
-  const auto input = OIIO::ImageInput::open((folder / "o.dpx").string());
-  ASSERT_TRUE(input) << OIIO::geterror();
-  const OIIO::ImageSpec spec = input->spec();
-  EXPECT_EQ(spec.nchannels, alpha ? 4 : 3);
-  const int most = max_code(type);
-  const int bits = std::bit_width(static_cast<unsigned>(most));
-  EXPECT_EQ(spec.get_int_attribute("oiio:BitsPerSample", bits), bits);
-  std::vector<float> samples(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-  ASSERT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, samples.data())) << input->geterror();
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  for (std::size_t i = 0; i < spec.image_pixels(); ++i) {
-    ASSERT_NEAR(alpha ? samples[i * channels + 3] : static_cast<float>(i % 5) / 4, static_cast<float>(i % 5) / 4,
-                0.55 / most);
-    if (wanted_alpha && (alpha ? i % 5 == 0 : i % 5 != 4)) continue;  // nothing is there, or less than all
-    for (std::size_t c = 0; c < 3; ++c)
-      ASSERT_NEAR(samples[i * channels + c] * static_cast<float>(most),
-                  static_cast<double>((95 + (i * 7 + c * 131) % 900)) / 1023 * most, 0.65)
-          << i << " " << c;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Dpx,
-                         testing::Combine(testing::Values(SampleType::uint8, SampleType::uint10, SampleType::uint12,
-                                                          SampleType::uint16),
-                                          testing::Bool()));
-
 TEST(MoreFormats, OtherSpaces) {
   const TemporaryFolder folder;
   const OutputSpace* gamma = find_output_space("gamma22").value();
@@ -372,93 +268,6 @@ TEST(MoreFormats, SmallJpeg2000) {
   EXPECT_EQ(refused.error().kind, ErrorKind::io);
   EXPECT_THAT(refused.error().text(), HasSubstr("sides of at least 32 pixels, not 31x64"));
   EXPECT_EQ(folder.count(), 0);
-}
-
-TEST(MoreFormats, WebpHoldsStraightCodes) {
-  const TemporaryFolder folder;
-  const Picture picture = wedge(37, 53, true);
-  for (const char* name : {"o.webp", "o.pam"}) ASSERT_TRUE(write(picture, folder / name, with(SampleType::automatic)));
-  const std::string webp = read_file(folder / "o.webp").value(), pam = read_file(folder / "o.pam").value();
-  int width = 0, height = 0;
-  std::uint8_t* pixels =
-      WebPDecodeRGBA(reinterpret_cast<const std::uint8_t*>(webp.data()), webp.size(), &width, &height);
-  ASSERT_TRUE(pixels);
-  EXPECT_EQ((Size{width, height}), (Size{37, 53}));
-  const std::string codes(reinterpret_cast<const char*>(pixels), 37 * 53 * 4);
-  WebPFree(pixels);
-  EXPECT_TRUE(pam.ends_with(codes));
-}
-
-/// Lines begin at words of 32 bits (SMPTE ST 268), whether the header tells of it, as ours does, or not.
-TEST(MoreFormats, DpxLinesAreWholeWords) {
-  const TemporaryFolder folder;
-  for (const int width : {5, 6, 7, 8}) {
-    const Picture picture = wedge(width, 4, false);
-    ASSERT_TRUE(write(picture, folder / "a.dpx", with(SampleType::uint8)));
-    const std::string bytes = read_file(folder / "a.dpx").value();
-    const std::size_t line = static_cast<std::size_t>(3 * width), words = (line + 3) / 4 * 4;
-    ASSERT_GE(bytes.size(), 4 * words);
-    const std::size_t offset = bytes.size() - 4 * words;
-    EXPECT_EQ(offset % 64, 0u) << "of the pixels";
-    const Picture told = read_or_fail(folder / "a.dpx");
-    std::string untold = bytes, tight = bytes.substr(0, offset);
-    untold.replace(812, 4, 4, '\0');
-    for (std::size_t y = 0; y < 4; ++y) tight += bytes.substr(offset + y * words, line);
-    tight.replace(812, 4, 4, '\0');
-    for (const std::string& other : {untold, tight}) {  // as FFmpeg writes them, and as OpenImageIO does
-      std::ofstream(folder / "b.dpx", std::ios::binary) << other;
-      EXPECT_EQ(read_or_fail(folder / "b.dpx").color.pixels, told.color.pixels) << width;
-    }
-    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
-      ASSERT_NEAR(told.color.pixels[i], picture.color.pixels[i], 0.02 + 0.05 * picture.color.pixels[i]) << width;
-  }
-}
-
-/// Soft edges keep their colours: nothing is multiplied in 8 bits.
-TEST(MoreFormats, WebpIsReadStraight) {
-  const TemporaryFolder folder;
-  Picture picture = wedge(16, 16, true);
-  for (std::size_t i = 0; i < picture.color.pixels.size(); i += 4) {
-    const float alpha = static_cast<float>(i / 4 % 16 + 1) / 255;
-    picture.color.pixels[i + 3] = alpha;
-    for (std::size_t c = 0; c < 3; ++c) picture.color.pixels[i + c] = alpha * (c == 0 ? 0.5f : 0.1f);
-  }
-  picture.has_alpha = true;
-  for (const char* name : {"o.webp", "o.png"})
-    ASSERT_TRUE(write(picture, folder / name, with(SampleType::automatic))) << name;
-  const Picture webp = read_or_fail(folder / "o.webp"), png = read_or_fail(folder / "o.png");
-  ASSERT_EQ(webp.color.pixels.size(), png.color.pixels.size());
-  for (std::size_t i = 0; i < png.color.pixels.size(); ++i)
-    ASSERT_FLOAT_EQ(webp.color.pixels[i], png.color.pixels[i]) << i;
-}
-
-/// As the container's specification has it: the chunk begins with the TIFF head.
-TEST(MoreFormats, WebpIsTurnedAsItsExifSays) {
-  const TemporaryFolder folder;
-  ASSERT_TRUE(write(wedge(40, 24, false), folder / "a.webp"));
-  const std::string plain = read_file(folder / "a.webp").value();
-  const std::string exif("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0", 26);
-  for (const bool named : {false, true}) {
-    std::string chunk = (named ? std::string("Exif\0\0", 6) : "") + exif;
-    const auto number = [](std::size_t value, int bytes) {
-      std::string out;
-      for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 255);
-      return out;
-    };
-    const std::string body = "WEBPVP8X" + number(10, 4) + std::string("\x08\0\0\0", 4) + number(39, 3) + number(23, 3) +
-                             plain.substr(12) + "EXIF" + number(chunk.size(), 4) + chunk;
-    std::ofstream(folder / "b.webp", std::ios::binary) << "RIFF" << number(body.size(), 4) << body;
-    EXPECT_EQ(read_or_fail(folder / "b.webp").color.size(), (Size{24, 40})) << named;
-  }
-}
-
-TEST(MoreFormats, WebpLossy) {
-  const TemporaryFolder folder;
-  Picture picture = wedge(64, 64, false);
-  ASSERT_TRUE(write(picture, folder / "a.webp"));
-  ASSERT_TRUE(write(picture, folder / "b.webp", compressed("lossy:10")));
-  EXPECT_LT(std::filesystem::file_size(folder / "b.webp"), std::filesystem::file_size(folder / "a.webp"));
-  EXPECT_EQ(read_or_fail(folder / "b.webp").color.size(), (Size{64, 64}));
 }
 
 }  // namespace

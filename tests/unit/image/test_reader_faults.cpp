@@ -12,7 +12,7 @@
 
 namespace afterglow {
 namespace {
-using testing::HasSubstr;
+using testing::HasSubstr, testing::StartsWith;
 
 std::string number(std::uint64_t value, int bytes, bool big = false) {
   std::string out;
@@ -212,6 +212,8 @@ TEST_F(ReaderFaults, HeifOfAnotherSizeThanItClaims) {
   EXPECT_EQ(said(bytes, "a.avif"), "is damaged: it claims 600×600 pixels and holds 13×9");
   bytes.replace(bytes.find("ispe") + 8, 8, number(13, 4, true) + number(9, 4, true));
   EXPECT_EQ(said(bytes, "a.avif"), "ok");
+  for (std::size_t cut = bytes.find("ispe"); cut < bytes.size() - 1; cut += 5)
+    EXPECT_THAT(said(bytes.substr(0, cut), "a.avif"), StartsWith("cannot be read: ")) << cut;
 }
 
 TEST_F(ReaderFaults, Jpeg2000ChannelsOfDifferentSizes) {

@@ -114,6 +114,10 @@ TEST(DeclareMessages, Settings) {
             "effects/glow.lua:3: error: fx.effect: no setting may be named 'name', which every entry has");
   EXPECT_EQ(declared("  settings = { fx.bool { default = true } },"),
             "effects/glow.lua:3: error: fx.effect: a setting needs a name; allowed: letters, digits and '_'");
+  EXPECT_EQ(
+      declared("  settings = { [\"my size\"] = fx.bool { default = true } },"),
+      "effects/glow.lua:3: error: fx.effect: 'my size' cannot be the name of a setting; allowed: 1 to 64 letters, "
+      "digits and '_', no digit first");
 }
 
 TEST(DeclareMessages, FunctionsOfSettings) {

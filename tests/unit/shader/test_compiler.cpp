@@ -306,6 +306,10 @@ TEST(KernelCompiler, WordsOfOtherLanguagesAreTranslated) {
   EXPECT_EQ(message("return saturate(color);"),
             "'saturate': no matching overloaded function found; write clamp(x, 0.0, 1.0)");
   EXPECT_EQ(message("half x = 0.5; return color * x;"), "'half': Reserved word; write float");
+  EXPECT_EQ(message("float input = 0.5; return color * input;"), "'input' is a word of GLSL; choose another name");
+  EXPECT_EQ(message("barrier(); return color;"), "'barrier' is for compute shaders (compute_at)");
+  EXPECT_EQ(message("return color * float(gl_LocalInvocationID.x);"),
+            "'gl_LocalInvocationID' is for compute shaders (compute_at)");
   EXPECT_EQ(message("return lost(color);"), "'lost': no matching overloaded function found");
   EXPECT_EQ(message("return vec4(image_size(color.rg), 0, 1);"),
             "'image_size': no matching overloaded function found; it is image_size(sampler2D image)");

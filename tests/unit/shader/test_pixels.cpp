@@ -38,25 +38,32 @@ TestImage smooth_light(Size size) {
 
 /// The texels and weights of one read at (2x + 1)·n_src/(2·n_dst) + offset along an axis: filter.h and math.md §1, in
 /// doubles.
-std::vector<std::pair<int, double>> axis_reads(Interpolation interpolation, int x, int n_src, int n_dst,
-                                               double offset) {
+std::vector<std::pair<int, double>> axis_reads(const Filter& filter, int x, int n_src, int n_dst, double offset) {
   const long long dividend = (2ll * x + 1) * n_src, divisor = 2ll * n_dst;
   std::vector<std::pair<int, double>> reads;
-  const auto clamped = [&](double i) { return static_cast<int>(std::clamp(i, 0.0, n_src - 1.0)); };
-  if (interpolation == Interpolation::nearest) {
+  const auto inside = [&](double i) {
+    if (filter.edges == Edges::mirror &&
+        (i < 0 || i >= n_src)) {  // the place in a period of the picture and its mirror
+      const double n = n_src, held = std::clamp(i, -3 * n, 3 * n - 1),
+                   place = held - 2 * n * std::floor(held / (2 * n));
+      return static_cast<int>(std::min(place, 2 * n - 1 - place));
+    }
+    return static_cast<int>(std::clamp(i, 0.0, n_src - 1.0));
+  };
+  if (filter.interpolation == Interpolation::nearest) {
     const double whole = std::floor(offset);  // the offsets of these tests are multiples of a half: no rounding at ties
     const long long twice = dividend * 2 + static_cast<long long>((offset - whole) * 2) * divisor;
-    return {{clamped(std::floor(static_cast<double>(twice) / static_cast<double>(2 * divisor)) + whole), 1.0}};
+    return {{inside(std::floor(static_cast<double>(twice) / static_cast<double>(2 * divisor)) + whole), 1.0}};
   }
   const double p = static_cast<double>(dividend) / static_cast<double>(divisor) + offset;
-  if (interpolation == Interpolation::linear) {
+  if (filter.interpolation == Interpolation::linear) {
     const double i = std::floor(p - 0.5), f = p - 0.5 - i;
-    return {{clamped(i), 1 - f}, {clamped(i + 1), f}};
+    return {{inside(i), 1 - f}, {inside(i + 1), f}};
   }
   const double s = p + 0.5, c = std::floor(s), t = s - c;
   const double w[4] = {std::pow(1 - t, 3) / 6, 2.0 / 3 - t * t + t * t * t / 2,
                        1.0 / 6 + t / 2 + t * t / 2 - t * t * t / 2, t * t * t / 6};
-  for (int k = 0; k < 4; ++k) reads.emplace_back(clamped(c - 2 + k), w[k]);
+  for (int k = 0; k < 4; ++k) reads.emplace_back(inside(c - 2 + k), w[k]);
   return reads;
 }
 
@@ -71,9 +78,8 @@ Expected expected(const Filter& filter, const TestImage& source, Size target, in
       for (const auto& b : filter.y) taps.push_back({a.offset, b.offset, a.weight * b.weight});
   Expected out;
   for (const auto& tap : taps)
-    for (const auto& [row, row_weight] : axis_reads(filter.interpolation, y, source.size.height, target.height, tap.dy))
-      for (const auto& [column, column_weight] :
-           axis_reads(filter.interpolation, x, source.size.width, target.width, tap.dx)) {
+    for (const auto& [row, row_weight] : axis_reads(filter, y, source.size.height, target.height, tap.dy))
+      for (const auto& [column, column_weight] : axis_reads(filter, x, source.size.width, target.width, tap.dx)) {
         const double part = tap.weight * row_weight * column_weight * source.at(column, row)[channel];
         out.value += part;
         out.magnitude += std::abs(part);
@@ -133,6 +139,11 @@ const std::vector<NamedFilter>& filters() {
       {"free_bspline", {kCubic, {{0, 1}}, {{0, 1}}, {{1, 0, 0.5}, {-0.5, 0.75, 0.5}}}},
       {"sharpen", {kLinear, {{-1, -0.5}, {0, 2}, {1, -0.5}}, {{-1, -0.5}, {0, 2}, {1, -0.5}}}},
       {"nothing", {kLinear, {{0, 0}}, {{0, 1}}}},
+      {"mirrored_halving",
+       {kLinear, {{-8, 0.1}, {-3.5, 0.2}, {0, 0.4}, {4, 0.2}, {8, 0.1}}, {{-1, 0.5}, {1, 0.5}}, {}, Edges::mirror}},
+      {"mirrored_bspline", {kCubic, {{0, 1}}, {{0, 1}}, {}, Edges::mirror}},
+      {"mirrored_free", {kLinear, {}, {}, {{-7.5, 0, 0.5}, {0.5, 9, 0.25}, {6, -6.5, 0.25}}, Edges::mirror}},
+      {"mirrored_nearest", {kNearest, {{0, 1}}, {{-2, 0.5}, {3, 0.5}}, {}, Edges::mirror}},
   };
   return kFilters;
 }
