@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,7 @@ using StackPtr = std::unique_ptr<afterglow_stack, FreeStack>;
 
 inline std::string str(afterglow_string view) { return {view.data, view.size}; }
 inline afterglow_string str(const std::string& text) { return {text.data(), text.size()}; }
+inline afterglow_string str(const char* text) { return {text, std::strlen(text)}; }  ///< a literal, which stays
 inline std::string text_of(const afterglow_error* error) { return str(afterglow_error_get_text(error)); }
 
 /// No error; else its text is the failure's.

@@ -154,10 +154,12 @@ TEST_F(BuildMessages, Filters) {
   const std::string at = "effects/probe.lua:5: error: pass 'glow.f' of effect 'probe': the filter";
   EXPECT_EQ(filter("5"),
             "effects/probe.lua:5: error: pass 'glow.f' of effect 'probe': filter = 5 is not a filter; allowed: { "
-            "interpolation, x, y, taps }, fx.filters.…");
-  EXPECT_EQ(filter("{ z = {} }"), at + " has no 'z'; allowed: interpolation, taps, x, y");
+            "interpolation, x, y, taps, edges }, fx.filters.…");
+  EXPECT_EQ(filter("{ z = {} }"), at + " has no 'z'; allowed: edges, interpolation, taps, x, y");
   EXPECT_EQ(filter("{ interpolation = \"linaer\" }"),
             at + ": unknown interpolation \"linaer\"; allowed: nearest, linear, cubic_bspline; did you mean 'linear'?");
+  EXPECT_EQ(filter("{ edges = \"miror\" }"),
+            at + ": unknown edges \"miror\"; allowed: stretch, mirror; did you mean 'mirror'?");
   EXPECT_EQ(filter("{ x = 5 }"), at + ": x = 5 is not a list of taps; allowed: {{offset, weight}, …}");
   EXPECT_EQ(filter("{ x = {} }"), at + ": x has 0 taps, not 1…256; allowed: {{offset, weight}, …}");
   EXPECT_EQ(filter("{ y = { { 0, 1 }, { 1 } } }"), at + ": tap 2 of y is {1}; allowed: {{offset, weight}, …}");
