@@ -11,8 +11,7 @@ namespace afterglow {
 /// four of the cubic B-spline (which blurs).
 enum class Interpolation { nearest, linear, cubic_bspline };
 
-/// What lies beyond the edges of the source: its edge texels, or the picture mirrored there (held at three times its
-/// size).
+/// What lies beyond the edges of the source: its edge texels, or the picture mirrored there, again and again.
 enum class Edges { stretch, mirror };
 
 struct Tap {

@@ -37,7 +37,7 @@ struct DoubleImage {
   const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
   /// The texel, coordinates clamped to the edge.
   const Rgba& clamped(int x, int y) const { return at(glm::clamp(x, 0, width - 1), glm::clamp(y, 0, height - 1)); }
-  /// The texel where the image is mirrored at its edges, up to three times its size; held beyond that.
+  /// The texel where the image is mirrored at its edges, again and again.
   const Rgba& mirrored(int x, int y) const { return at(folded(x, width), folded(y, height)); }
   const Rgba& beyond(int x, int y, Edges edges) const {
     return edges == Edges::mirror ? mirrored(x, y) : clamped(x, y);
@@ -45,10 +45,8 @@ struct DoubleImage {
 
  private:
   static int folded(int i, int n) {
-    if (i < 0) i = -1 - i;
-    if (i >= n) i = 2 * n - 1 - i;
-    if (i < 0) i = -1 - i;
-    return glm::min(i, n - 1);
+    while (i < 0 || i >= n) i = i < 0 ? -1 - i : 2 * n - 1 - i;
+    return i;
   }
 };
 

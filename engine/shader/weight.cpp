@@ -87,7 +87,7 @@ class Places {
 };
 
 struct Function {
-  std::uint64_t held = 0, copied = 0, instructions = 0;  ///< bytes, bytes, count
+  std::uint64_t held = 0, copied = 0, instructions = 0, loops = 0;  ///< bytes, bytes, count, count
   std::vector<std::uint32_t> calls;
 };
 
@@ -106,7 +106,7 @@ class Scales {
                   fmt::format("at most {} bytes", kMaxSharedBytes));
     if (largest_.first > kMaxVariableBytes) return too_large();
     Function all = with_calls(main_);
-    for (auto* count : {&all.held, &all.copied, &all.instructions})
+    for (auto* count : {&all.held, &all.copied, &all.instructions, &all.loops})
       *count /= static_cast<unsigned>(kernel_.config.rows);
     if (const std::uint64_t held = saturated_sum({file_scope_, all.held}); held > kMaxHeldBytes)
       return fail(largest_.second,
@@ -117,6 +117,10 @@ class Scales {
                   fmt::format("the shader copies arrays of {} as a whole, among them '{{}}'", bytes_of(all.copied)),
                   fmt::format("at most {} bytes; give each element by itself", kMaxCopiedBytes));
     if (all.instructions > kMaxInstructions) return too_long();
+    const bool joined = kernel_.stages.size() + (kernel_.sample ? 1 : 0) > 1 && kernel_.config.fusion == Fusion::all;
+    if (joined && all.loops > kMaxJoinedLoops)
+      return fail(main_, fmt::format("passes that are joined in '{{}}' have {} loops", all.loops),
+                  fmt::format("at most {}", kMaxJoinedLoops));
     return {};
   }
 
@@ -188,6 +192,7 @@ class Scales {
 
   void instruction(const Instruction& i) {
     ++function_->instructions;
+    if (i.op == spv::OpLoopMerge) ++function_->loops;
     if (i.op == spv::OpFunctionCall) function_->calls.push_back(i.words[3]);
     // What goes back to where it came from is the mark of a variable without a value (shader/give_values.h).
     const bool mark = load_ && i.op == spv::OpStore && i.words[1] == load_->words[3] && i.words[2] == load_->result;
@@ -212,6 +217,7 @@ class Scales {
       out.held = saturated_sum({out.held, called.held});
       out.copied = saturated_sum({out.copied, called.copied});
       out.instructions = saturated_sum({out.instructions, called.instructions});
+      out.loops = saturated_sum({out.loops, called.loops});
     }
     return whole_[id] = std::move(out);
   }

@@ -45,11 +45,14 @@ void ag_fraction_beyond(inout int base, int rest, int n_target, float high, floa
   g = ((divisor - whole) - part) / divisor;
 }
 
-// The texel that lies at i where the image is mirrored at its edges; held at three times its size.
+// The texel that lies at i where the image is mirrored at its edges, again and again. (The quotient is guessed in floats and off by
+// one at most.)
 int ag_mirrored(int i, int last) {
-  i = i < 0 ? -1 - i : i;
-  i = min(i, 2 * last + 1 - i);
-  return min(i < 0 ? -1 - i : i, last);
+  int period = 2 * last + 2;
+  i -= period * int(floor(float(i) * (1.0 / float(period))));
+  i += i < 0 ? period : 0;
+  i -= i >= period ? period : 0;
+  return min(i, period - 1 - i);
 }
 
 // Size of an input, in texels.

@@ -83,6 +83,29 @@ TEST(Hostile, SizesAreLimited) {
 }
 
 /// Drivers unfold them, and take minutes, gigabytes or their own death for it.
+/// Passes with more loops than a driver compiles in seconds run one by one: joined, they are refused.
+TEST(Hostile, LoopsOfJoinedPassesAreFew) {
+  ShaderFiles files;
+  KernelCompiler compiler{fs::path()};
+  const auto looped = [&](const char* name, int calls) {
+    std::string text =
+        "float f(float v, int n) { for (int i = 0; i < n; ++i) v = v * 1.5 + float(i); return v; }\n"
+        "vec4 apply(vec4 color, ivec2 pixel) {\n";
+    for (int i = 0; i < calls; ++i) text += fmt::format("  color.r = f(color.r, pixel.x % {});\n", i + 3);
+    return files.stage(name, text + "  return color;\n}\n");
+  };
+  const auto compiles = [&](int first, int second, Fusion fusion) {
+    KernelDesc desc = one(looped("t/a", first));
+    if (second > 0) desc.stages.push_back(looped("t/b", second));
+    desc.config.fusion = fusion;
+    return compiler.compile(desc).ok();
+  };
+  EXPECT_TRUE(compiles(5, 5, Fusion::all));
+  EXPECT_FALSE(compiles(6, 5, Fusion::all));
+  EXPECT_TRUE(compiles(16, 0, Fusion::all)) << "alone";
+  EXPECT_TRUE(compiles(6, 5, Fusion::filters)) << "the way that is left has to do";
+}
+
 TEST(Hostile, WhatAShaderHoldsIsLimited) {
   const auto refused = [](const std::string& text, int line, const std::string& name) {
     const std::string said = outcome(text);

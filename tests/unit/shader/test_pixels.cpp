@@ -44,8 +44,7 @@ std::vector<std::pair<int, double>> axis_reads(const Filter& filter, int x, int 
   const auto inside = [&](double i) {
     if (filter.edges == Edges::mirror &&
         (i < 0 || i >= n_src)) {  // the place in a period of the picture and its mirror
-      const double n = n_src, held = std::clamp(i, -3 * n, 3 * n - 1),
-                   place = held - 2 * n * std::floor(held / (2 * n));
+      const double n = n_src, place = i - 2 * n * std::floor(i / (2 * n));
       return static_cast<int>(std::min(place, 2 * n - 1 - place));
     }
     return static_cast<int>(std::clamp(i, 0.0, n_src - 1.0));
