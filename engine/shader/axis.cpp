@@ -133,12 +133,17 @@ std::vector<FetchTerm> Axis::fetch(double offset) {
   const auto [i, fraction] = split(offset);
   const int phase = phase_for(fraction);
   const auto position = [&](int shift, const std::string& part) {
-    return fmt::format("float({}) + ({} + 0.5)", sum(base(phase), shift), part);
+    return inside(fmt::format("float({}) + ({} + 0.5)", sum(base(phase), shift), part));
   };
   if (interpolation_ == Interpolation::linear) return {{position(i, name("f", phase)), 1, {}}};
   const std::string w = name("w", phase);
   return {{position(i - 1, fmt::format("{0}.y / ({0}.x + {0}.y)", w)), 1, fmt::format("({0}.x + {0}.y)", w)},
           {position(i + 1, fmt::format("{0}.w / ({0}.z + {0}.w)", w)), 1, fmt::format("({0}.z + {0}.w)", w)}};
+}
+
+std::string Axis::inside(const std::string& position) const {
+  if (edges_ == Edges::stretch) return position;  // as the sampler has it
+  return fmt::format("ag_mirrored_at({}, float(ag_source_size.{}))", position, letter_);
 }
 
 std::vector<FetchTerm> Axis::fetch_pairs(const std::map<TexelKey, double>& texels) const {
@@ -151,7 +156,7 @@ std::vector<FetchTerm> Axis::fetch_pairs(const std::map<TexelKey, double>& texel
       shift += next->second / weight;
       ++it;
     }
-    terms.push_back({fmt::format("float({}) + {}", base(0), float_literal(shift + 0.5)), weight, {}});
+    terms.push_back({inside(fmt::format("float({}) + {}", base(0), float_literal(shift + 0.5))), weight, {}});
   }
   return terms;
 }

@@ -61,7 +61,7 @@ class Axis {
   std::vector<PlacedTerm> read_placed(double offset);
   /// Expression: the weight at the pixel's place.
   std::string weight(const std::vector<double>& by_place) const;
-  /// The same through the sampler's interpolation. Not for Interpolation::nearest, nor for Edges::mirror.
+  /// The same through the sampler's interpolation. Not for Interpolation::nearest.
   std::vector<FetchTerm> fetch(double offset);
   /// For a fixed axis: filtered fetches for merged texels, neighbours in pairs.
   std::vector<FetchTerm> fetch_pairs(const std::map<TexelKey, double>& texels) const;
@@ -81,6 +81,8 @@ class Axis {
   std::string by_place(const std::vector<std::string>& values) const;
   std::string name(const char* what, int phase) const;  ///< "ag_xf0"
   std::string base(int phase) const;
+  /// Expression: a position that the sampler may take.
+  std::string inside(const std::string& position) const;
 
   char letter_;
   AxisRatio ratio_;

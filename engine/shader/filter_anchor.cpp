@@ -420,7 +420,6 @@ Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRat
 
 Result<std::string> filter_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
   AFTERGLOW_CHECK(check(filter));
-  hardware_filter = hardware_filter && filter.edges == Edges::stretch;  // as samplers have it
   if (filter.separable()) return separable_anchor(filter, ratio_x, ratio_y, hardware_filter);
   if (hardware_filter && filter.interpolation == Interpolation::linear)
     return free_sampler_anchor(filter, ratio_x, ratio_y);

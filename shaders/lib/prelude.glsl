@@ -55,6 +55,13 @@ int ag_mirrored(int i, int last) {
   return min(i, period - 1 - i);
 }
 
+// The same for positions between texels, where a sampler interpolates: the picture on the other side of an edge is that on this side.
+float ag_mirrored_at(float position, float size) {
+  float period = 2.0 * size;
+  position -= period * floor(position / period);
+  return min(position, period - position);
+}
+
 // Size of an input, in texels.
 ivec2 image_size(sampler2D image) { return textureSize(image, 0); }
 
