@@ -69,10 +69,6 @@ DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples
   const double across = glm::max(center.x, 1 - center.x) * source.width;
   const double down = glm::max(center.y, 1 - center.y) * source.height;
   const double length = std::hypot(across, down) * -std::log(1 - amount);
-  const int factor = length > 400 ? 4 : length > 2 ? 2 : 1;
-  const int reads = glm::max(samples, static_cast<int>(std::ceil(length / (1.5 * factor))));
-  const int near = static_cast<int>(std::ceil(std::sqrt(reads))), far = (reads + near - 1) / near;
-  const double ratio = std::pow(1 - amount, 1.0 / (near * far));
 
   const auto zoomed = [&](const DoubleImage& image, int count, double first, double step) {
     return generate(image.size(), [&](int x, int y) {
@@ -88,26 +84,37 @@ DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples
       return Rgba(sum / weights, 1);
     });
   };
-  DoubleImage image = source;
-  if (factor > 1) {
-    Filter mean;
-    const Size small{(source.width + factor - 1) / factor, (source.height + factor - 1) / factor};
-    mean.x = mean_over(static_cast<double>(source.width) / small.width);
-    mean.y = mean_over(static_cast<double>(source.height) / small.height);
-    image = resample(image, small, mean);
-  }
-  image = zoomed(image, near, 1, ratio);
-  image = zoomed(image, far, std::sqrt(ratio), std::pow(ratio, near));
-  if (factor > 1) {
-    const auto enlarge = factor > 2 ? Interpolation::cubic_bspline : Interpolation::linear;
-    image = resample(image, source.size(), {.interpolation = enlarge});
-  }
-  return generate(source.size(), [&](int x, int y) {
-    const Point away = Point(x + 0.5, y + 0.5) - center * Point(source.width, source.height);
-    const double share = glm::clamp((amount * glm::length(away) / factor - 0.5) / 1.5, 0.0, 1.0);
-    const Rgba& p = source.at(x, y);
-    return Rgba(Rgb(p) + share * (Rgb(image.at(x, y)) - Rgb(p)), p.a);
-  });
+  const auto streaks = [&](int factor) {
+    const int reads = glm::max(samples, static_cast<int>(std::ceil(length / (1.5 * factor))));
+    const int near = static_cast<int>(std::ceil(std::sqrt(reads))), far = (reads + near - 1) / near;
+    const double ratio = std::pow(1 - amount, 1.0 / (near * far));
+    DoubleImage image = source;
+    if (factor > 1) {
+      Filter mean;
+      const Size small{(source.width + factor - 1) / factor, (source.height + factor - 1) / factor};
+      mean.x = mean_over(static_cast<double>(source.width) / small.width);
+      mean.y = mean_over(static_cast<double>(source.height) / small.height);
+      image = resample(image, small, mean);
+    }
+    image = zoomed(image, near, 1, ratio);
+    image = zoomed(image, far, std::sqrt(ratio), std::pow(ratio, near));
+    if (factor > 1) {
+      const auto enlarge = factor > 2 ? Interpolation::cubic_bspline : Interpolation::linear;
+      image = resample(image, source.size(), {.interpolation = enlarge});
+    }
+    return generate(source.size(), [&](int x, int y) {
+      const Point away = Point(x + 0.5, y + 0.5) - center * Point(source.width, source.height);
+      const double share = glm::clamp((amount * glm::length(away) / factor - 0.5) / 1.5, 0.0, 1.0);
+      const Rgba& p = source.at(x, y);
+      return Rgba(Rgb(p) + share * (Rgb(image.at(x, y)) - Rgb(p)), p.a);
+    });
+  };
+  if (length <= 2) return streaks(1);
+  const double share = glm::clamp((length - 400) / 200, 0.0, 1.0);
+  const DoubleImage fine = streaks(2);
+  if (share == 0) return fine;
+  const DoubleImage coarse = streaks(4);
+  return generate(source.size(), [&](int x, int y) { return glm::mix(fine.at(x, y), coarse.at(x, y), share); });
 }
 
 DoubleImage directional_blur(const DoubleImage& source, double distance, double angle) {

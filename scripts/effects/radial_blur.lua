@@ -4,6 +4,9 @@
 -- made in a smaller picture; around the centre, where they are short, the sharp one stands. math.md §37.
 local fx = require "afterglow"
 
+local kFine = 400  -- pixels: streaks up to this are made in a picture of half the size, longer ones in one of a quarter
+local kBoth = 200  -- and in both for so many pixels more
+
 return fx.effect {
   name = "radial_blur",
   doc = "Streaks towards a centre, as of a zoom or of speed.",
@@ -24,22 +27,32 @@ return fx.effect {
     local length = math.sqrt(across * across + down * down) * -math.log(1 - amount)
     -- Of the picture that is delivered: a preview is small as it is.
     local whole = length / g.length_scale
-    local factor = whole > 2 and math.max(1, math.min(4, math.floor((whole > 400 and 4 or 2) * g.length_scale + 0.5))) or 1
-    local reads = math.max(s.samples, math.ceil(length / (1.5 * factor)))
-    local near = math.ceil(math.sqrt(reads))
-    local far = math.ceil(reads / near)
-    local ratio = (1 - amount) ^ (1 / (near * far))
-    local size = { (source.width + factor - 1) // factor, (source.height + factor - 1) // factor }
-    local image = source
-    if factor > 1 then
-      image = g:filter { source = image, size = size, filter = fx.filters.area(source.width / size[1], source.height / size[2]), name = "small" }
+    local function side(pixels) return whole > 2 and math.max(1, math.min(4, math.floor(pixels * g.length_scale + 0.5))) or 1 end
+
+    -- Streaks of a picture that is `factor` times smaller.
+    local function streaks(factor, tag)
+      local reads = math.max(s.samples, math.ceil(length / (1.5 * factor)))
+      local near = math.ceil(math.sqrt(reads))
+      local far = math.ceil(reads / near)
+      local ratio = (1 - amount) ^ (1 / (near * far))
+      local size = { (source.width + factor - 1) // factor, (source.height + factor - 1) // factor }
+      local image = source
+      if factor > 1 then
+        image = g:filter { source = image, size = size, filter = fx.filters.area(source.width / size[1], source.height / size[2]), name = "small" .. tag }
+      end
+      image = g:pass { shader = "radial_blur/zoom", source = image, center = s.center, first = 1, ratio = ratio, count = near, name = "near" .. tag }
+      image = g:pass { shader = "radial_blur/zoom", source = image, center = s.center, first = math.sqrt(ratio), ratio = ratio ^ near, count = far, name = "far" .. tag }
+      if factor > 1 then
+        image = g:filter { source = image, size = source, filter = factor > 2 and fx.filters.bspline() or fx.filters.bilinear(), name = "up" .. tag }
+      end
+      return g:pass { shader = "radial_blur/over", source = image, picture = source, center = { s.center[1] * source.width, s.center[2] * source.height },
+                      amount = amount, factor = factor, name = "final" .. tag }
     end
-    image = g:pass { shader = "radial_blur/zoom", source = image, center = s.center, first = 1, ratio = ratio, count = near, name = "near" }
-    image = g:pass { shader = "radial_blur/zoom", source = image, center = s.center, first = math.sqrt(ratio), ratio = ratio ^ near, count = far, name = "far" }
-    if factor > 1 then
-      image = g:filter { source = image, size = source, filter = factor > 2 and fx.filters.bspline() or fx.filters.bilinear(), name = "up" }
-    end
-    return g:pass { shader = "radial_blur/over", source = image, picture = source, center = { s.center[1] * source.width, s.center[2] * source.height },
-                    amount = amount, factor = factor, name = "final" }
+
+    -- Longer ones are made in a smaller picture. Both, where one gives way to the other: a zoom that moves would jump.
+    local fine, coarse, share = side(2), side(4), math.max(0, math.min((whole - kFine) / kBoth, 1))
+    if share == 0 or fine == coarse then return streaks(fine, "") end
+    if share == 1 then return streaks(coarse, "") end
+    return g:pass { shader = "bloom/scatter", source = streaks(coarse, "_coarse"), high = streaks(fine, ""), amount = share, name = "mix" }
   end,
 }

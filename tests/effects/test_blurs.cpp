@@ -60,6 +60,11 @@ TEST_F(Effects, DualKawaseAgrees) {
 
 TEST_F(Effects, RadialBlurAgrees) {
   agree_everywhere({zoomed(0.15, 16, {0.5, 0.5}), zoomed(1, 33, {0.2, 0.9}), zoomed(0.4, 2, {1, 0})}, kBetweenPixels);
+  // A streak of 500 pixels, made in both ways.
+  const EffectCase both = zoomed(1 - std::exp(-500 / std::hypot(150, 100)), 8, {0.5, 0.5});
+  const Scene scene = random_scene({300, 200}, 3);
+  EXPECT_TRUE(
+      agrees(run_stack(both.entries, scene, Way::plain).result, both.oracle(scene), kBetweenPixels.full, kRgba));
   expect_skipped("fx.radial_blur { intensity = 0 }", "intensity is 0");
 }
 
