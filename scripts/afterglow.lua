@@ -98,8 +98,8 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field channels? 1|2|4                  that are kept; readers find 0 and an alpha of 1 for the others, as of passes. Fewer: `first` is numbers. Default: 4
 ---@field precise? boolean                 false: may be kept in half floats where other images are; default: true
 
----A linear resampling as data: out(X, Y) = Σ weight · I(p + offset), p = (X + ½) · n_source / n_target in texels. Reads outside
----are clamped to the edge; weights are used as given.
+---A linear resampling as data: out(X, Y) = Σ weight · I(p + offset), p = (X + ½) · n_source / n_target in texels. What lies
+---outside `edges` tells; weights are used as given.
 ---@class afterglow.Filter
 ---@field interpolation? "nearest"|"linear"|"cubic_bspline"  how I is read between texel centres; default "linear"
 ---@field x? number[][]     {{offset, weight}, …} along x, offsets in texels of the source; default {{0, 1}}

@@ -9,9 +9,9 @@
 
 namespace afterglow {
 
-/// What a limit on threads is told with.
+/// The message where a limit on threads is met.
 inline constexpr const char* kNoMoreThreads =
-    "no more threads can be started (ulimit -u, or pids of the control group)";
+    "no more threads can be started (ulimit -u or -v, or pids of the control group)";
 
 /// What the exception of a library says, as house messages are: one line without a full stop; "out of memory" for
 /// std::bad_alloc.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "core/parallel.h"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -164,24 +167,39 @@ Helpers& helpers() {
 
 thread_local bool is_alone = false;
 
+constexpr std::size_t kMostWaits = 100;  // of a millisecond, for threads that have ended
+
 }  // namespace
 
 void loop_alone() { is_alone = true; }
 
 bool can_start_threads(std::size_t count) {
   std::atomic<bool> all = false;
+  std::vector<pid_t> ids(count);
   std::vector<std::thread> threads;
-  bool started = true;
+  threads.reserve(count);
+  const auto wait = [&](std::size_t i) {
+    ids[i] = gettid();
+    all.wait(false);
+  };
   try {
-    threads.reserve(count);
-    while (threads.size() < count) threads.push_back(quiet_thread([&] { all.wait(false); }));
+    for (std::size_t i = 0; i < count; ++i) threads.push_back(quiet_thread([&wait, i] { wait(i); }));
   } catch (const std::exception&) {
-    started = false;
+    // Those that began are the answer.
   }
   all = true;
   all.notify_all();
   for (std::thread& thread : threads) thread.join();
-  return started;
+  // The system counts a thread for a moment after it has been joined.
+  for (std::size_t i = 0, waits = 0; i < threads.size() && waits < kMostWaits;) {
+    if (access(fmt::format("/proc/self/task/{}", ids[i]).c_str(), F_OK) != 0) {
+      ++i;
+      continue;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++waits;
+  }
+  return threads.size() == count;
 }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work) {

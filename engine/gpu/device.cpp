@@ -39,11 +39,15 @@ Result<void> check_threads(const DeviceInfo& info) {
   if (info.type != "cpu") return {};
   constexpr long kMost = 32;  // that Mesa's driver starts
   const char* asked = std::getenv("LP_NUM_THREADS");
-  const long wanted = asked ? std::atol(asked) : static_cast<long>(std::thread::hardware_concurrency());
+  char* end = nullptr;
+  long wanted = asked ? std::strtol(asked, &end, 0) : 0;
+  if (!asked || end == asked) wanted = static_cast<long>(std::thread::hardware_concurrency());
   const long threads = std::clamp(wanted, 0l, kMost) + 1;  // and one for what is submitted
   if (can_start_threads(static_cast<std::size_t>(threads))) return {};
-  return Error{ErrorKind::device, fmt::format("cannot open device '{}': {}", info.name, kNoMoreThreads), "", 0,
-               fmt::format("{} at a time for its driver; fewer for Mesa's with LP_NUM_THREADS=1", threads)};
+  return Error{
+      ErrorKind::device,
+      fmt::format("cannot open device '{}', whose driver needs {} threads: {}", info.name, threads, kNoMoreThreads), "",
+      0, "LP_NUM_THREADS=1 for fewer, with Mesa's driver"};
 }
 
 Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& chosen, bool present) {
@@ -99,7 +103,6 @@ Result<Opened> open_chosen(const VulkanFunctions& vk, std::vector<DeviceInfo> in
     const bool automatic = choice.empty() || choice == "auto";
     if (!automatic) return std::move(opened).error();
     infos[*index].usable = false;
-    infos[*index].why_not = opened.error().message;
     failed = std::move(opened).error();
   }
 }

@@ -56,6 +56,8 @@ Rect filter_rect(const Filter& filter, const Rect& target, Size source_size, Siz
     for (const auto& tap : filter.y) extend(y, tap.offset);
   }
   for (const auto& tap : filter.taps) extend(x, tap.dx), extend(y, tap.dy);
+  if (filter.edges == Edges::mirror)  // what is mirrored lies on the other side
+    for (Reach* axis : {&x, &y}) axis->before = axis->behind = std::max(axis->before, axis->behind);
   const int around = filter.interpolation == Interpolation::cubic_bspline ? 3 : 2;
   return source_rect(target, source_size, target_size, x, y, around);
 }

@@ -162,7 +162,7 @@ class HeifItems {
   }
 
   void add(Size size) {
-    if (size.width < 1 || size.height < 1) return;  // cut off: whose reader says why
+    if (size.width < 1 || size.height < 1) return;  // cut off, or damaged: the reader says why
     if (!largest_ || size.area() > largest_->area()) largest_ = size;
   }
 

@@ -190,7 +190,7 @@ class OiioFile : public PictureFile {
         part.unreadable = fits.error().message;  // kept, so that parts and sub-images have the same numbers
       }
       parts_.push_back(std::move(part));
-      specs_.push_back(spec);
+      specs_.push_back(std::move(spec));
     }
     if (parts_.empty()) return failed("holds no picture");
     return {};

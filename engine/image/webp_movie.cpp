@@ -77,7 +77,6 @@ class WebpMovie : public MovieSource {
   Result<void> look_at_frames(const MovieRequest& request, bool cut) {
     const std::unique_ptr<WebPDemuxer, WebpDeleter> demuxer(WebPDemux(&data_));
     if (!demuxer) return Error{ErrorKind::io, cut ? "is truncated before its first frame" : "is a damaged WebP file"};
-    const std::uint32_t flags = WebPDemuxGetI(demuxer.get(), WEBP_FF_FORMAT_FLAGS);
     facts_.container = facts_.codec = "webp";
     facts_.pixel_format = "rgba";
     facts_.pictures_alone = true;

@@ -7,7 +7,6 @@
 #include <exception>
 #include <mutex>
 #include <set>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -228,7 +227,7 @@ ReadAhead::ReadAhead(Read read, const ReadAheadOptions& options, std::function<v
   state_->arrived = std::move(arrived);
   try {
     for (int i = 0; i < std::max(options.threads, 1); ++i) state_->threads.emplace_back([this] { state_->run(); });
-  } catch (const std::system_error&) {  // no more threads to be had: those that run read
+  } catch (const std::exception&) {  // no more threads to be had: those that run read
     if (state_->threads.empty()) throw;
   }
 }

@@ -49,7 +49,7 @@
 ---@field bicubic_upsampling? boolean|afterglow.OfTime  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
 ---@field reference_height? integer|afterglow.Moving  The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is. integer 0…16384 lines, default 0
 ---@field clamp? number|afterglow.Moving  Light that is brighter than this (largest channel, linear) glows as if it were this bright, so that single wild pixels do not white out a picture; for path-traced pictures about 50. 0: no limit. 0…65504, default 0
----@field edges? "stretch"|"mirror"|afterglow.OfTime  What is taken to lie outside of the picture: its last pixels, which makes light at the edges glow up to four times as much, or its mirror image, with which it glows as everywhere. default "stretch"
+---@field edges? "stretch"|"mirror"|afterglow.OfTime  What is taken to lie outside of the picture: its last pixels, which makes light at the edges glow more, in corners four times as much, or its mirror image, with which it glows as everywhere. default "stretch"
 ---@field fade_fireflies? boolean|afterglow.OfTime  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
 ---Blurs the picture as a lens out of focus: bright points become discs or polygons.

@@ -8,12 +8,13 @@ local kBins = 64         -- two of them a texel
 local kNear = 1.5        -- stops from which adaptation slows down
 local kForgotten = 0.01  -- stops: what is left of an earlier difference of four stops after the pre-roll
 local kLongest = 60      -- seconds of pre-roll at most
+local kMost = 10000      -- frames of it
 
 -- Frames until a start that was four stops off makes no more difference than kForgotten.
 local function pre_roll(g, s)
   local speed = math.min(s.speed_up, s.speed_down)
   local seconds = ((4 - kNear) + kNear * math.log(kNear / kForgotten)) / speed
-  return math.ceil(math.min(seconds, kLongest) / g.frame_time)
+  return math.min(math.ceil(math.min(seconds, kLongest) / g.frame_time), kMost)
 end
 
 return fx.effect {

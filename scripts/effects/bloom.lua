@@ -65,8 +65,11 @@ end
 
 -- Pixels that light reaches, generously: nine reads two texels apart at each level, and four on the way up.
 local function reach(s, source) return 24 * 2 ^ pyramid(s, source) end
--- Light whose sum stays has to be that far from the edges, unless the picture is mirrored there.
-local function from_edges(s, source) return s.edges == "mirror" and 0 or reach(s, source) end
+-- Light whose sum stays has to be that far from the edges, unless the picture is mirrored there. (The filter of fireflies stretches it.)
+local function from_edges(s, source)
+  if s.edges ~= "mirror" then return reach(s, source) end
+  return s.fade_fireflies and 4 or 0
+end
 
 local function passes_all(s) return s.threshold == 0 and not s.fade_fireflies end
 local function is_linear(s) return passes_all(s) and s.clamp == 0 and s.intensity <= 1 end
@@ -96,7 +99,7 @@ return fx.effect {
     clamp = fx.float { min = 0, max = 65504, default = 0,
       doc = "Light that is brighter than this (largest channel, linear) glows as if it were this bright, so that single wild pixels do not white out a picture; for path-traced pictures about 50. 0: no limit." },
     edges = fx.enum { "stretch", "mirror", default = "stretch",
-      doc = "What is taken to lie outside of the picture: its last pixels, which makes light at the edges glow up to four times as much, or its mirror image, with which it glows as everywhere." },
+      doc = "What is taken to lie outside of the picture: its last pixels, which makes light at the edges glow more, in corners four times as much, or its mirror image, with which it glows as everywhere." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
 

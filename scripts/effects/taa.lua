@@ -4,7 +4,7 @@
 -- temporal supersampling", GDC 2016); the past is read by Catmull and Rom's spline, so that it stays sharp. For noise and shimmer of renders that are not jittered, too.
 local fx = require "afterglow"
 
--- Frames until less of a start is left than half a code of 8 bits.
+-- Frames until less than a 512th of a difference at the start is left.
 local function pre_roll(s) return math.ceil(math.log(1 / 512) / math.log(s.feedback)) end
 
 return fx.effect {

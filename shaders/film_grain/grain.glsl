@@ -5,7 +5,7 @@
 
 layout(constant_id = 0) const bool is_fine = true;     // one grain a pixel
 layout(constant_id = 1) const bool grey = true;        // the same grain in all channels
-layout(constant_id = 2) const bool is_coarse = false;  // grain of cells; both: so much of each
+layout(constant_id = 2) const bool is_coarse = false;  // grain of cells; both: a mix
 
 uniform float strength;
 uniform float response;
@@ -13,7 +13,7 @@ uniform vec2 size_of_grain;  // side of a cell, pixels: in 64ths, and the rest
 uniform float colored;
 uniform int key;     // a word of the frame and the seed
 uniform vec2 shift;  // where the frame's cells begin, pixels
-uniform float coarse;
+uniform float coarse;  // share of the grain of cells, where there are both
 
 // Grey; and, where there is colour, red, green and blue. `row`: word_of(key ^ the cell's row).
 vec4 grain(uint row, int column) {
@@ -34,7 +34,7 @@ vec4 coarse_grain(ivec2 pixel) {
   vec4 n = vec4(0.0);
   for (int j = -1; j <= 1; ++j) {
     float down = j < 0 ? before.y : j > 0 ? after.y : own.y;
-    uint row = word_of(uint(key ^ (cell.y + j)));
+    uint row = word_of(uint(key ^ (cell.y + j)) ^ 0x80000000u);  // cells have a key of their own: pixels have their numbers, too
     n += down * (before.x * grain(row, cell.x - 1) + own.x * grain(row, cell.x) + after.x * grain(row, cell.x + 1));
   }
   vec2 squares = before * before + own * own + after * after;

@@ -63,6 +63,33 @@ TEST_F(Effects, FilmGrainHasMeanOneAndItsDeviationAtEverySize) {
   }
 }
 
+std::uint32_t word_of(std::uint32_t x) {  // shaders/lib/noise.glsl
+  x = (x ^ (x >> 16u)) * 0x7feb352du;
+  x = (x ^ (x >> 15u)) * 0x846ca68bu;
+  return x ^ (x >> 16u);
+}
+
+/// Where a cell has the number of the pixel that it lies on, the grain of both is no stronger than elsewhere.
+TEST_F(Effects, FilmGrainOfPixelsAndOfCellsKnowNothingOfEachOther) {
+  constexpr int kFrames = 150, kSide = 128;
+  double squares = 0;
+  int count = 0;
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const auto pixels = grain_of(frame, "fx.film_grain { intensity = 1, response = 0, size = 1.4 }");
+    const std::uint32_t key = word_of(word_of(0) + static_cast<std::uint32_t>(frame));
+    const double side = 1.4 * std::sqrt(2.0 / 3);
+    const int x = static_cast<int>((key >> 24u) / 16.0 / (side - 1)),
+              y = static_cast<int>((key >> 16u & 255u) / 16.0 / (side - 1));
+    for (int j = std::max(y, 1) - 1; j <= std::min(y + 1, kSide - 1); ++j)
+      for (int i = std::max(x, 1) - 1; i <= std::min(x + 1, kSide - 1); ++i, ++count) {
+        const double noise = (pixels[4 * static_cast<std::size_t>(kSide * j + i)] / 0.25 - 1) / 0.25;
+        squares += noise * noise;
+      }
+  }
+  ASSERT_GT(count, 1000);
+  EXPECT_NEAR(std::sqrt(squares / count), 1, 0.1);
+}
+
 /// Mean difference of neighbours across, by column, over many frames.
 std::vector<double> sharpness_by_column(const char* entries, int frames) {
   std::vector<double> sharpness(128);

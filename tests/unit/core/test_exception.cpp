@@ -26,7 +26,7 @@ TEST(Exception, WhatNobodyExpectsIsAnErrorOfOurs) {
   const Error threads =
       exception_error(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again)));
   EXPECT_EQ(threads.kind, ErrorKind::io);
-  EXPECT_EQ(threads.message, "no more threads can be started (ulimit -u, or pids of the control group)");
+  EXPECT_EQ(threads.message, "no more threads can be started (ulimit -u or -v, or pids of the control group)");
 }
 
 }  // namespace

@@ -20,12 +20,18 @@ bool holds(const Rect& rect, const std::pair<int, int>& p) {
 }
 
 /// Texels that one read at t (a texel's centre is at its number) touches.
-std::vector<int> texels(double t, Interpolation interpolation, int size) {
+std::vector<int> texels(double t, const Filter& filter, int size) {
+  const Interpolation interpolation = filter.interpolation;
   const int base = static_cast<int>(std::floor(interpolation == Interpolation::nearest ? t + 0.5 : t));
   const int first = interpolation == Interpolation::cubic_bspline ? -1 : 0;
   const int last = interpolation == Interpolation::nearest ? 0 : interpolation == Interpolation::linear ? 1 : 2;
   std::vector<int> out;
-  for (int i = first; i <= last; ++i) out.push_back(std::clamp(base + i, 0, size - 1));
+  for (int i = first; i <= last; ++i) {
+    int at = base + i;
+    if (filter.edges == Edges::mirror)
+      while (at < 0 || at >= size) at = at < 0 ? -1 - at : 2 * size - 1 - at;
+    out.push_back(std::clamp(at, 0, size - 1));
+  }
   return out;
 }
 
@@ -48,8 +54,8 @@ void add_reads(const Graph& graph, const Pass& pass, const PassInput& input, int
     for (const auto& a : pass.filter.x)
       for (const auto& b : pass.filter.y) taps.push_back({a.offset, b.offset, 1});
   for (const auto& tap : taps)
-    for (const int u : texels(tx + tap.dx, pass.filter.interpolation, from.width))
-      for (const int v : texels(ty + tap.dy, pass.filter.interpolation, from.height)) out.insert({u, v});
+    for (const int u : texels(tx + tap.dx, pass.filter, from.width))
+      for (const int v : texels(ty + tap.dy, pass.filter, from.height)) out.insert({u, v});
 }
 
 std::vector<Pixels> search(const Graph& graph, const Rect& wanted) {
@@ -100,6 +106,7 @@ class RandomGraph {
     const ImageId made = b.filter(name, from, size);
     Filter& filter = b.graph.passes.back().filter;
     filter.interpolation = static_cast<Interpolation>(number(0, 2));
+    filter.edges = static_cast<Edges>(number(0, 1));
     const auto offset = [&] { return number(-9, 9) / 4.0; };
     if (number(0, 1)) {
       filter.x.assign(static_cast<std::size_t>(number(1, 3)), {});

@@ -82,7 +82,6 @@ TEST(Hostile, SizesAreLimited) {
               HasSubstr("reads at most 16 images"));
 }
 
-/// Drivers unfold them, and take minutes, gigabytes or their own death for it.
 /// Passes with more loops than a driver compiles in seconds run one by one: joined, they are refused.
 TEST(Hostile, LoopsOfJoinedPassesAreFew) {
   ShaderFiles files;
@@ -106,6 +105,7 @@ TEST(Hostile, LoopsOfJoinedPassesAreFew) {
   EXPECT_TRUE(compiles(6, 5, Fusion::filters)) << "the way that is left has to do";
 }
 
+/// Drivers unfold them, and take minutes, gigabytes or their own death for it.
 TEST(Hostile, WhatAShaderHoldsIsLimited) {
   const auto refused = [](const std::string& text, int line, const std::string& name) {
     const std::string said = outcome(text);
