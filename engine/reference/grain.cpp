@@ -26,13 +26,10 @@ std::uint32_t word_of(std::uint32_t x) {
 
 std::uint32_t key_of(const FilmGrain& s) { return word_of(word_of(s.seed) + s.frame); }
 
-/// Of single pixels, and of cells, which have a key of their own.
-enum class Grains : std::uint32_t { pixels = 0, cells = 0x80000000u };
-
-/// Red, green, blue, grey.
-Rgba noise_of(Grains grains, int x, int y, const FilmGrain& s) {
+/// Red, green, blue, grey. `own`: beside cells, which have the numbers of pixels, too, pixels have a key of their own.
+Rgba cell_noise(int x, int y, const FilmGrain& s, bool own = false) {
   const std::uint32_t key = (key_of(s) & 0x7fffffffu) ^ static_cast<std::uint32_t>(y);
-  const std::uint32_t row = word_of(key ^ static_cast<std::uint32_t>(grains));
+  const std::uint32_t row = word_of(own ? key ^ 0x80000000u : key);
   const std::uint32_t w = word_of(row + static_cast<std::uint32_t>(x) * 0x9e3779b9u);
   return {normal(word_of(w + 1)), normal(word_of(w + 2)), normal(word_of(w + 3)), normal(w)};
 }
@@ -55,7 +52,7 @@ Rgba coarse_noise(int x, int y, const FilmGrain& s) {
   for (int j = cy - 1; j <= cy + 1; ++j)
     for (int i = cx - 1; i <= cx + 1; ++i) {
       const double weight = spline(px - i - 0.5) * spline(py - j - 0.5);
-      sum += weight * noise_of(Grains::cells, i, j, s);
+      sum += weight * cell_noise(i, j, s);
       squares += weight * weight;
     }
   return sum / std::sqrt(squares);
@@ -64,7 +61,7 @@ Rgba coarse_noise(int x, int y, const FilmGrain& s) {
 /// From 1 to 1.5 pixels the grain of single pixels gives way to that of cells.
 Rgba noise(int x, int y, const FilmGrain& s) {
   const double share = std::min(2 * (s.size - 1), 1.0);
-  const Rgba fine = noise_of(Grains::pixels, x, y, s);
+  const Rgba fine = cell_noise(x, y, s, share > 0);
   if (share == 0) return fine;
   const Rgba coarse = coarse_noise(x, y, s);
   return (fine + share * (coarse - fine)) / std::hypot(share, 1 - share);

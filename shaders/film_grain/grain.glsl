@@ -22,7 +22,8 @@ vec4 grain(uint row, int column) {
   if (!grey) sum.yzw = vec3(bytes_of(word_of(word + 1u)), bytes_of(word_of(word + 2u)), bytes_of(word_of(word + 3u)));
   return sum;
 }
-vec4 grain(ivec2 cell) { return grain(word_of(uint(key ^ cell.y)), cell.x); }
+// Beside cells, which have the numbers of pixels, too, pixels have a key of their own.
+vec4 pixel_grain(ivec2 pixel) { return grain(word_of(uint(key ^ pixel.y) ^ (is_coarse ? 0x80000000u : 0u)), pixel.x); }
 
 // Between cells by quadratic B-splines, which are nearly as sharp everywhere; divided by the root of the sum of squared weights the deviation
 // stays 1. Each frame has its cells elsewhere: a lattice would stand still over all of them.
@@ -34,7 +35,7 @@ vec4 coarse_grain(ivec2 pixel) {
   vec4 n = vec4(0.0);
   for (int j = -1; j <= 1; ++j) {
     float down = j < 0 ? before.y : j > 0 ? after.y : own.y;
-    uint row = word_of(uint(key ^ (cell.y + j)) ^ 0x80000000u);  // cells have a key of their own: pixels have their numbers, too
+    uint row = word_of(uint(key ^ (cell.y + j)));
     n += down * (before.x * grain(row, cell.x - 1) + own.x * grain(row, cell.x) + after.x * grain(row, cell.x + 1));
   }
   vec2 squares = before * before + own * own + after * after;
@@ -46,7 +47,7 @@ float deviation_of_one(float share) { return inversesqrt(share * share + (1.0 - 
 
 vec4 noise(ivec2 pixel) {
   if (!is_fine) return coarse_grain(pixel);
-  vec4 fine = grain(pixel) - kBytesMean;
+  vec4 fine = pixel_grain(pixel) - kBytesMean;
   return is_coarse ? (fine + coarse * (coarse_grain(pixel) - fine)) * deviation_of_one(coarse) : fine;
 }
 
