@@ -107,7 +107,7 @@ class RandomGraph {
     Filter& filter = b.graph.passes.back().filter;
     filter.interpolation = static_cast<Interpolation>(number(0, 2));
     filter.edges = static_cast<Edges>(number(0, 1));
-    const auto offset = [&] { return number(-9, 9) / 4.0; };
+    const auto offset = [&] { return number(-36, 36) / 4.0; };
     if (number(0, 1)) {
       filter.x.assign(static_cast<std::size_t>(number(1, 3)), {});
       filter.y.assign(static_cast<std::size_t>(number(1, 3)), {});
