@@ -147,9 +147,12 @@ class Helpers {
 /// Never freed: threads that nobody waits for may outlive what is static.
 constinit std::atomic<Helpers*> all_helpers = nullptr;
 
-/// A child of fork() has none of the threads, and makes its own.
+/// A child of fork() has none of the threads, and makes its own. What is asked once is asked here: where a fork came
+/// while another thread asked, its child would wait for the answer for ever.
 const struct Registered {
   Registered() {
+    static_cast<void>(processors());
+    const PlainLocale asked;
     pthread_atfork(nullptr, nullptr, [] { all_helpers = nullptr; });
   }
   ~Registered() {
