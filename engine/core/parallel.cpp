@@ -14,6 +14,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -170,7 +171,9 @@ Helpers& helpers() {
 
 thread_local bool is_alone = false;
 
-constexpr std::size_t kMostWaits = 100;  // of a millisecond, for threads that have ended
+// For threads that have ended: a tenth of a second at most, as a rule less than a millisecond.
+constexpr std::chrono::microseconds kWait(50);
+constexpr int kMostWaits = 2000;
 
 }  // namespace
 
@@ -181,12 +184,12 @@ bool can_start_threads(std::size_t count) {
   std::vector<pid_t> ids(count);
   std::vector<std::thread> threads;
   threads.reserve(count);
-  const auto wait = [&](std::size_t i) {
-    ids[i] = gettid();
-    all.wait(false);
-  };
   try {
-    for (std::size_t i = 0; i < count; ++i) threads.push_back(quiet_thread([&wait, i] { wait(i); }));
+    for (pid_t& id : ids)
+      threads.push_back(quiet_thread([&] {
+        id = gettid();
+        all.wait(false);
+      }));
   } catch (const std::exception&) {
     // Those that began are the answer.
   }
@@ -194,13 +197,10 @@ bool can_start_threads(std::size_t count) {
   all.notify_all();
   for (std::thread& thread : threads) thread.join();
   // The system counts a thread for a moment after it has been joined.
-  for (std::size_t i = 0, waits = 0; i < threads.size() && waits < kMostWaits;) {
-    if (access(fmt::format("/proc/self/task/{}", ids[i]).c_str(), F_OK) != 0) {
-      ++i;
-      continue;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    ++waits;
+  int waits = 0;
+  for (std::size_t i = 0; i < threads.size(); ++i) {
+    const std::string task = fmt::format("/proc/self/task/{}", ids[i]);
+    for (; waits < kMostWaits && access(task.c_str(), F_OK) == 0; ++waits) std::this_thread::sleep_for(kWait);
   }
   return threads.size() == count;
 }

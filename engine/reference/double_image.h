@@ -37,10 +37,9 @@ struct DoubleImage {
   const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
   /// The texel, coordinates clamped to the edge.
   const Rgba& clamped(int x, int y) const { return at(glm::clamp(x, 0, width - 1), glm::clamp(y, 0, height - 1)); }
-  /// The texel where the image is mirrored at its edges, again and again.
-  const Rgba& mirrored(int x, int y) const { return at(folded(x, width), folded(y, height)); }
+  /// The same, or the texel where the image is mirrored at its edges, again and again.
   const Rgba& beyond(int x, int y, Edges edges) const {
-    return edges == Edges::mirror ? mirrored(x, y) : clamped(x, y);
+    return edges == Edges::mirror ? at(folded(x, width), folded(y, height)) : clamped(x, y);
   }
 
  private:
