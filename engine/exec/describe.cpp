@@ -32,8 +32,11 @@ Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass, bool comp
     if (error.file.empty()) error.file = pass.file, error.line = pass.line;
     return error;
   }
-  return KernelStage{
-      .shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name, .straight = pass.straight};
+  return KernelStage{.shader = std::move(shader).value(),
+                     .constants = pass.constants,
+                     .label = pass.name,
+                     .straight = pass.straight,
+                     .lights_black = pass.lights_black};
 }
 
 /// Images that stages of a kernel read at the own pixel: by which stage and input first.

@@ -139,7 +139,7 @@ class Device {
   std::shared_ptr<const ValidationLog> validation_log() const { return log_; }
 
   /// Loads and saves the pipeline cache below `folder` (keyed by the device's pipeline cache UUID); unreadable data is
-  /// ignored.
+  /// ignored. Thread-safe, but for the first call with a folder: no pipeline may be made meanwhile.
   void use_pipeline_cache(const std::string& folder);
   void save_pipeline_cache() const;
 
@@ -164,8 +164,9 @@ class Device {
   bool stores_from_fragments_ = false;
   bool stores_few_channels_ = false;
   ForcedWays forced_;
+  mutable std::mutex cache_mutex_;  ///< for the two below
   std::string cache_file_;
-  mutable std::atomic<std::size_t> cached_bytes_ = 0;  ///< of the pipeline cache, as its file has it
+  mutable std::size_t cached_bytes_ = 0;  ///< of the pipeline cache, as its file has it
   std::shared_ptr<ValidationLog> log_;
   std::shared_ptr<const Presentation> presentation_;
 };

@@ -50,7 +50,10 @@ std::string read_pipeline_cache(const std::string& file, const VkPhysicalDeviceP
 void Device::use_pipeline_cache(const std::string& folder) {
   std::string uuid;
   for (const auto byte : properties_.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
-  cache_file_ = (std::filesystem::path(folder) / fmt::format("pipelines-{}.bin", uuid)).string();
+  std::string file = (std::filesystem::path(folder) / fmt::format("pipelines-{}.bin", uuid)).string();
+  const std::lock_guard lock(cache_mutex_);
+  if (file == cache_file_) return;  // loaded; others may be making pipelines with it
+  cache_file_ = std::move(file);
   const std::string data = read_pipeline_cache(cache_file_, properties_);
   if (data.empty()) return;
   note_cache_use(cache_file_);
@@ -64,6 +67,7 @@ void Device::use_pipeline_cache(const std::string& folder) {
 }
 
 void Device::save_pipeline_cache() const {
+  const std::lock_guard lock(cache_mutex_);
   if (cache_file_.empty()) return;
   std::size_t size = 0;
   if (functions_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;

@@ -79,7 +79,7 @@ int straight_passes(const Graph& graph) {
 
 Graph without_division(Graph graph) {
   if (const int passes = straight_passes(graph); passes > 0) graph.skipped.push_back(skipped_division(passes));
-  for (auto& pass : graph.passes) pass.straight = false;
+  for (auto& pass : graph.passes) pass.straight = pass.lights_black = false;
   return graph;
 }
 

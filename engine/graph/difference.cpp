@@ -47,7 +47,7 @@ std::string pass_difference(const Graph& a, const Pass& p, const Graph& b, const
   const bool same = p.name == q.name && p.kind == q.kind && p.shader == q.shader &&
                     p.by_workgroups == q.by_workgroups && p.filter == q.filter && same_inputs(a, p, b, q) &&
                     p.params == q.params && p.constants == q.constants && p.reach == q.reach &&
-                    p.straight == q.straight && same_target(a, p, b, q);
+                    p.straight == q.straight && p.lights_black == q.lights_black && same_target(a, p, b, q);
   return same ? std::string() : fmt::format("pass '{}' is made otherwise", p.name);
 }
 

@@ -202,7 +202,7 @@ bool same_structure(const Graph& a, const Graph& b) {
     const Pass &p = a.passes[i], &q = b.passes[i];
     if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || p.by_workgroups != q.by_workgroups ||
         !(p.filter == q.filter) || p.inputs != q.inputs || p.constants != q.constants || p.output != q.output ||
-        p.params.size() != q.params.size() || p.straight != q.straight)
+        p.params.size() != q.params.size() || p.straight != q.straight || p.lights_black != q.lights_black)
       return false;
     for (auto x = p.params.begin(), y = q.params.begin(); x != p.params.end(); ++x, ++y)
       if (x->first != y->first || x->second.type != y->second.type) return false;

@@ -68,6 +68,8 @@ struct Pass {
   std::optional<double> reach;
   /// Of a pixel pass: its colour is divided by its alpha before and multiplied by it behind (math.md §19).
   bool straight = false;
+  /// Of a straight one: it may make light of black, which is taken away again where alpha is 0: nothing is there.
+  bool lights_black = false;
   ImageId output = kNoImage;
   std::string file;  ///< script and line that asked for it, for messages
   int line = 0;
@@ -134,8 +136,8 @@ std::vector<std::string> shaders_of(const Pass& pass);
 /// size, histories whose images exist and fit. Errors (script) name effect and pass.
 Result<void> validate(const Graph& graph);
 
-/// True when b differs from a in dynamic parameter values and in the pixels of what the look brings along alone, so that
-/// a program made for a can run b.
+/// True when b differs from a in dynamic parameter values and in the pixels of what the look brings along alone, so
+/// that a program made for a can run b.
 bool same_structure(const Graph& a, const Graph& b);
 
 /// JSON for `afterglow graph --format json` and for tests.

@@ -89,7 +89,7 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
   if (rules.space) return encode_in_space(rules, rgba, width, x0, y, codes);
   const CodeEncoder& encoder = CodeEncoder::srgb(rules.max_code);
   for (int x = 0; x < width; ++x, rgba += 4) {
-    const float alpha = rgba[3], cover = rules.alpha ? cover_of(alpha) : 1;
+    const float alpha = std::min(rgba[3], 1.0f), cover = rules.alpha ? cover_of(alpha) : 1;
     for (int c = 0; c < 3; ++c) {
       const float linear = cover != 1 ? rgba[c] / cover : rgba[c];
       *codes++ =
@@ -126,7 +126,7 @@ void padded_row(const Picture& picture, const Stored* pixels, int y, Sample padd
 
 void make_straight(float* rgba, std::size_t pixels) {
   for (float* p = rgba; p != rgba + 4 * pixels; p += 4)
-    if (const float cover = cover_of(p[3]); cover != 1)
+    if (const float cover = cover_of(std::min(p[3], 1.0f)); cover != 1)
       for (int c = 0; c < 3; ++c) p[c] /= cover;
 }
 

@@ -31,7 +31,8 @@ void display_row(const Picture& picture, int y, float padding_alpha, float* rgba
 /// The same of `picture.unorm8`, padded with the codes of that.
 void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std::uint8_t* rgba);
 
-/// RGBA pixels without their coverage (math.md §19); in place.
+/// RGBA pixels without their coverage (math.md §19); in place. Codes hold an alpha of 1 at most, so that is what an
+/// alpha above it counts for.
 void make_straight(float* rgba, std::size_t pixels);
 
 /// How RGBA becomes code values.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <utility>
 
@@ -81,8 +82,13 @@ ChannelChoice color_choice(const Layer& l) {
   const int x = l.find({"x"}), y = l.find({"y"}), z = l.find({"z"});
   if (x >= 0 && y >= 0 && z >= 0) return {l.part, {x, y, z, -1}};
   if (const int grey = grey_of(l); grey >= 0) return {l.part, {grey, grey, grey, alpha_of(l)}};
-  if (red_of(l) >= 0 && (green_of(l) >= 0 || blue_of(l) >= 0))  // the third one is black
-    return {l.part, {red_of(l), green_of(l), blue_of(l), alpha_of(l)}};
+  const std::array<int, 3> colors{red_of(l), green_of(l), blue_of(l)};
+  const auto known = std::ranges::count_if(colors, [](int channel) { return channel >= 0; });
+  if (known == 2) return {l.part, {colors[0], colors[1], colors[2], alpha_of(l)}};  // the third one is black
+  if (known == 1 && l.channels.size() == (alpha_of(l) >= 0 ? 2u : 1u)) {
+    const int only = *std::ranges::max_element(colors);
+    return {l.part, {only, only, only, alpha_of(l)}};
+  }
   if (l.channels.size() >= 3) return {l.part, {l.channels[0], l.channels[1], l.channels[2], -1}};
   return {l.part, {l.channels[0], l.channels[0], l.channels[0], -1}};
 }

@@ -47,6 +47,7 @@ struct Picture {
   /// one frame, in pixels, x to the right and y down; "layer:NAME": up to 4 channels as stored, finite. Only those that
   /// the file (or --depth/--normal/--motion) holds and the caller asked for.
   std::map<std::string, Image> auxiliary;
+  std::vector<std::string> asked;   ///< names of auxiliary inputs that it was read for: what is not there, it has not
   std::vector<std::string> layers;  ///< names of all layers of the file, read or not
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;

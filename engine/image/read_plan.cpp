@@ -107,16 +107,9 @@ Rect upright_display(const FilePart& part) {
 
 Rect upright_frame(const ReadPlan& plan) {
   constexpr std::uint64_t kMostTimes = 4;
-  Rect data = upright_data(plan.color_part());
-  const Rect display = upright_display(plan.color_part());
-  if (plan.cut_overscan) {
-    const std::int64_t left = std::max(data.x, display.x), top = std::max(data.y, display.y);
-    const std::int64_t right = std::min(std::int64_t{data.x} + data.width, std::int64_t{display.x} + display.width);
-    const std::int64_t bottom = std::min(std::int64_t{data.y} + data.height, std::int64_t{display.y} + display.height);
-    if (left < right && top < bottom)
-      data = {static_cast<int>(left), static_cast<int>(top), static_cast<int>(right - left),
-              static_cast<int>(bottom - top)};
-  }
+  const Rect data = upright_data(plan.color_part()), display = upright_display(plan.color_part());
+  if (std::max(display.width, display.height) > SizeLimits().max_side) return data;
+  if (plan.cut_overscan) return display;
   const int x0 = std::min(data.x, display.x), y0 = std::min(data.y, display.y);
   const std::int64_t x1 = std::max(std::int64_t{data.x} + data.width, std::int64_t{display.x} + display.width),
                      y1 = std::max(std::int64_t{data.y} + data.height, std::int64_t{display.y} + display.height);

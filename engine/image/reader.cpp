@@ -178,6 +178,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   picture.data_window = upright_frame(plan);
   picture.display_window = upright_display(part);
   picture.has_alpha = plan.color.channels[3] >= 0;
+  picture.asked = options.auxiliary;
   const auto facts = std::make_shared<FileFacts>(facts_of(plan));
   picture.facts = facts;
   picture.layers = layers_of(plan);

@@ -36,12 +36,42 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
+/// Is there light where alpha is 0, as glows around a layer are? Programs that read straight alpha show nothing there.
+/// What hardly shows does not count, nor do a few pixels.
+bool glows_outside(const Picture& picture) {
+  constexpr float kLight = 0.01f;
+  constexpr std::uint8_t kCode = 26;  // of that
+  if (!picture.has_alpha) return false;
+  const auto width = static_cast<std::size_t>(picture.color.width),
+             height = static_cast<std::size_t>(picture.color.height);
+  const auto glow = [](const auto* pixel, auto least) {
+    return pixel[3] == 0 && std::max({pixel[0], pixel[1], pixel[2]}) >= least;
+  };
+  std::size_t pixels = 0;
+  std::vector<float> memory;
+  for (std::size_t y = 0; y < height; ++y) {
+    if (!picture.unorm8.empty()) {
+      for (std::size_t x = 0; x < width; ++x) pixels += glow(&picture.unorm8[4 * (width * y + x)], kCode);
+      continue;
+    }
+    const float* row = color_row(picture, static_cast<int>(y), memory);
+    for (std::size_t x = 0; x < width; ++x) pixels += glow(&row[4 * x], kLight);
+  }
+  return pixels > width * height / 10000;
+}
+
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
   if (!strip_form(picture, format, options).alpha && has_transparency(picture))
     diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
                                  format.extensions[0].substr(1),
                                  format.alpha ? " in 10 bits (--type uint16 has)" : ""));
+  const StripForm form = strip_form(picture, format, options);
+  const bool codes = form.type != SampleType::half && form.type != SampleType::float32;  // their alpha is straight
+  if (format.kind != OutputKind::exr && form.alpha && codes && glows_outside(picture))
+    diagnostics.warn_once("glow outside",
+                          fmt::format("light that glows where alpha is 0 is not seen in {} files; EXR keeps it",
+                                      format.extensions[0].substr(1)));
   switch (format.kind) {
     case OutputKind::exr:
       break;

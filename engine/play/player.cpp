@@ -37,6 +37,7 @@ LiveOptions Player::State::live_options(const std::vector<Override>& overrides) 
   live.stack.keep_images = true;  // after an edit only what it changes runs again
   live.stack.spare_programs = 3;  // of presets whose passes come and go with the frame
   live.warm_up = options.warm_up;
+  live.inputs_follow = true;
   live.notify = [this, given = options.live.notify] {
     wake();
     if (given) given();
@@ -134,6 +135,26 @@ bool Player::State::wants_more() const {
   return false;
 }
 
+/// Inputs that looks wait for which were edited, and cannot be built without.
+std::set<std::string> Player::State::awaited() const {
+  std::set<std::string> out;
+  for (LiveSession* session : {first.get(), second.get()}) {
+    if (!session) continue;
+    const std::vector<std::string> wants = session->live().wants();
+    out.insert(wants.begin(), wants.end());
+  }
+  return out;
+}
+
+/// Was the picture read for all that the looks want?
+bool Player::State::was_asked(const Picture& read) const {
+  const auto asked = [&](const std::string& name) { return std::ranges::find(read.asked, name) != read.asked.end(); };
+  return std::ranges::all_of(std::array{first.get(), second.get()}, [&](LiveSession* session) {
+    Stack* const stack = session ? session->live().stack() : nullptr;
+    return !stack || std::ranges::all_of(stack->preset().needs(), asked);
+  });
+}
+
 /// What the present stacks want of pictures: when they want more, or other colours, pictures are read again. Both looks
 /// see the same ones, as the first has them read.
 void Player::State::follow_needs() {
@@ -147,6 +168,7 @@ void Player::State::follow_needs() {
     ask_frames(stack->preset());
     for (const auto& name : stack->preset().needs()) auxiliary.insert(name);
   }
+  auxiliary.merge(awaited());
   bool others = false;
   {
     const std::lock_guard lock(mutex);
@@ -174,10 +196,12 @@ void Player::State::follow_needs() {
 void Player::State::take_builds() {
   bool changed = first->live().update();
   if (second && second->live().update()) changed = true;
-  if (changed) {
-    dirty = reloaded = true;
-    follow_needs();
-  }
+  if (changed) dirty = reloaded = true;
+  const std::set<std::string> more = awaited();
+  const auto known = [&](const std::string& name) {
+    return std::ranges::find(needs.auxiliary, name) != needs.auxiliary.end();
+  };
+  if (changed || !std::ranges::all_of(more, known)) follow_needs();
 }
 
 /// Errors of builds, once each, for the terminal.
@@ -255,8 +279,9 @@ Result<bool> Player::State::show_due(double now) {
   const std::int64_t ran_tick = ran ? ran->tick : due.tick;  // what is on screen runs again in its own place
   if (!read) {
     if (transport.playing() && due.moved) ++figures.late;
-    // An edit need not wait for the next picture: the one on screen shows it.
-    if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, ran_tick, false});
+    // An edit need not wait for the next picture: the one on screen shows it, unless it wants more of it.
+    if (dirty && picture && shown.position >= 0 && was_asked(picture->picture))
+      return run(picture, {shown.position, ran_tick, false});
     return false;
   }
   // What could not be read is told once, until it is read anew; edits show on the picture that stays.
@@ -343,7 +368,7 @@ Result<Step> Player::step() {
   if (s.sound) s.sound_follower.follow(s.transport, *s.footage, *s.sound, now);
   AFTERGLOW_TRY(step.changed, s.show_due(now));
   s.watch_finite();
-  s.take_finite();
+  step.told = s.take_finite();
   step.next = s.transport.next_due();
   AFTERGLOW_TRY(step.timed, s.time_a_kernel(step.changed, step));
   s.turn_ended = s.now();
@@ -404,6 +429,20 @@ Transport& Player::transport() { return state_->transport; }
 View& Player::view() { return state_->view; }
 const std::filesystem::path& Player::preset_file() const { return state_->options.preset; }
 const std::filesystem::path& Player::other_file() const { return state_->options.other_preset; }
+std::function<Result<Picture>()> Player::reader_with_inputs() const {
+  const State& s = *state_;
+  if (s.shown.position < 0 || !s.picture) return {};
+  const int key = s.footage->frame(s.shown.position).picture;
+  FootageNeeds needs = s.needs;
+  for (const char* name : {"depth", "normal", "motion"})
+    if (std::ranges::find(needs.auxiliary, name) == needs.auxiliary.end()) needs.auxiliary.emplace_back(name);
+  if (needs == s.needs || s.footage->movie(key)) return {};
+  return [footage = s.footage, key, needs]() -> Result<Picture> {
+    Diagnostics silent;  // it was read before
+    return footage->read(key, needs, silent);
+  };
+}
+
 const Footage& Player::footage() const { return *state_->footage; }
 const FootageOptions& Player::footage_options() const { return state_->options.footage; }
 Sound* Player::sound() { return state_->sound.get(); }

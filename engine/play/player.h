@@ -48,6 +48,7 @@ struct Step {
   bool changed = false;   ///< `images` or `shown` are others than before: draw
   bool reloaded = false;  ///< a new build was taken
   bool timed = false;     ///< `Player::kernel_times` has something new
+  bool told = false;      ///< ShownFrame::not_finite is another than before: it is drawn over the same images
   double next = 0;        ///< when the next frame is due, by the player's clock; infinity: not before a `wake`
 };
 
@@ -110,6 +111,9 @@ class Player {
   Transport& transport();
   View& view();
   const Footage& footage() const;
+  /// Reads the picture on screen anew, with depth, normals and motion, which looks may ask for that are not played. May
+  /// be called on any thread, and when the player is gone. Empty: it has no more than `source` has.
+  std::function<Result<Picture>()> reader_with_inputs() const;
   const std::filesystem::path& preset_file() const;
   const std::filesystem::path& other_file() const;  ///< of `other`
   Sound* sound();                                   ///< null without PlayerOptions::sound

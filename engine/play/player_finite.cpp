@@ -36,15 +36,14 @@ void Player::State::watch_finite() {
   finite_watch->ask(std::move(question));
 }
 
-/// Each pass is told once, until all is well again.
-void Player::State::take_finite() {
-  if (!finite_watch) return;
+/// Each pass is told once, until all is well again. True: what is shown says something else.
+bool Player::State::take_finite() {
+  if (!finite_watch) return false;
   auto answer = finite_watch->take();
-  if (!answer) return;
+  if (!answer) return false;
   if (answer->passes.empty() && !answer->untraced) {
-    shown.not_finite.reset();
     told_finite.clear();
-    return;
+    return std::exchange(shown.not_finite, nullptr) != nullptr;
   }
   for (const PassFinding& finding : answer->passes) {
     const std::string where = finding.file.empty() ? "" : fmt::format("{}:{}: ", finding.file, finding.line);
@@ -54,6 +53,7 @@ void Player::State::take_finite() {
   if (answer->untraced && told_finite.insert("untraced").second)
     diagnostics.warn(fmt::format("{}: {}", answer->name, kUntraced));
   shown.not_finite = std::make_shared<const FiniteAnswer>(*std::move(answer));
+  return true;
 }
 
 void Player::finish_finite_watch() {

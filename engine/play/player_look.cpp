@@ -8,6 +8,7 @@
 
 #include "image/metadata.h"
 #include "image/non_finite.h"
+#include "image/sequence.h"
 #include "play/player.h"
 #include "play/player_state.h"
 #include "script/schema.h"

@@ -89,9 +89,11 @@ struct Player::State {
   void take_builds();
   void tell_errors();
   void watch_finite();
-  void take_finite();
+  bool take_finite();
   void ask_frames(Preset& preset) const;
   bool wants_more() const;
+  std::set<std::string> awaited() const;
+  bool was_asked(const Picture& read) const;
   void follow_needs();
   Result<bool> show_due(double now);
   Result<bool> time_a_kernel(bool changed, Step& step);

@@ -14,12 +14,29 @@ constexpr double kPi = std::numbers::pi;
 
 Filter of_taps(std::vector<Tap2d> taps) { return {.interpolation = Interpolation::linear, .taps = std::move(taps)}; }
 
-/// `count` reads on a line, `spacing` apart.
-Filter line(int count, double spacing, double angle) {
+/// The mean along `length` columns of what is interpolated between columns that are `step` apart.
+Filter mean_of_line(double length, glm::dvec2 step) {
+  const double end = length / 2;
+  const int last = static_cast<int>(std::ceil(end));
   std::vector<Tap2d> taps;
-  for (int i = 0; i < count; ++i) {
-    const double at = (i - (count - 1) / 2.0) * spacing;
-    taps.push_back({at * std::cos(angle), -at * std::sin(angle), 1.0 / count});
+  for (int i = -last; i <= last; ++i) {
+    double weight = 0;  // of a column between its neighbours: a straight line on each side
+    for (const int side : {i - 1, i}) {
+      const double from = glm::clamp<double>(side, -end, end), to = glm::clamp<double>(side + 1, -end, end);
+      weight += (to - from) * (1 - std::abs((from + to) / 2 - i));
+    }
+    taps.push_back({i * step.x, i * step.y, weight / length});
+  }
+  return of_taps(std::move(taps));
+}
+
+/// The mean of `count` reads, `spacing` columns apart, interpolated along the line.
+Filter pieces(int count, double spacing, glm::dvec2 step) {
+  std::vector<Tap2d> taps;
+  for (int i = -(count / 2); i <= count / 2; ++i) {
+    const double low = std::floor(i * spacing), share = i * spacing - low;
+    taps.push_back({low * step.x, low * step.y, (1 - share) / count});
+    taps.push_back({(low + 1) * step.x, (low + 1) * step.y, share / count});
   }
   return of_taps(std::move(taps));
 }
@@ -44,12 +61,21 @@ DoubleImage with_alpha_of(const DoubleImage& picture, DoubleImage image) {
 
 DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset_wanted) {
   const double offset = std::floor(offset_wanted * 1024 + 0.5) / 1024;
-  std::vector<Tap2d> down{{0, 0, 0.5}}, up;
+  std::vector<Tap2d> reads{{0, 0, 0.5}}, up;
   for (const double x : {-1.0, 1.0})
     for (const double y : {-1.0, 1.0}) {
-      down.push_back({x * offset, y * offset, 0.125});
+      reads.push_back({x * offset, y * offset, 0.125});
       up.push_back({x * offset / 2, y * offset / 2, 2.0 / 12});
     }
+  // Along an odd side each read is the mean of two, a texel apart.
+  const auto down = [&](Size size) {
+    std::vector<Tap2d> taps;
+    for (const Tap2d& read : reads)
+      for (const double x : {-0.25, 0.25})
+        for (const double y : {-0.25, 0.25})
+          taps.push_back({read.dx + 2 * x * (size.width % 2), read.dy + 2 * y * (size.height % 2), read.weight / 4});
+    return taps;
+  };
   for (const double d : {-offset, offset}) {
     up.push_back({d, 0, 1.0 / 12});
     up.push_back({0, d, 1.0 / 12});
@@ -58,7 +84,7 @@ DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset
   std::vector<Size> sizes;
   for (int i = 0; i < iterations && image.width > 1 && image.height > 1; ++i) {
     sizes.push_back(image.size());
-    image = resample(image, {image.width / 2, image.height / 2}, of_taps(down));
+    image = resample(image, {image.width / 2, image.height / 2}, of_taps(down(image.size())));
   }
   for (auto size = sizes.rbegin(); size != sizes.rend(); ++size) image = resample(image, *size, of_taps(up));
   return with_alpha_of(source, image);
@@ -119,16 +145,15 @@ DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples
 
 DoubleImage directional_blur(const DoubleImage& source, double distance, double angle) {
   const double radians = angle * kPi / 180;
-  const int reads = glm::max(2, static_cast<int>(std::ceil(distance)));
-  const int root = static_cast<int>(std::ceil(std::sqrt(reads)));
-  int n = root, m = root;
-  for (int near = root; near <= 2 * root; ++near) {
-    const int far = (reads + near - 1) / near;
-    if (far + near <= 2 * root && far * near < n * m) n = far, m = near;
-  }
-  const double spacing = distance / (n * m);
-  const DoubleImage far = resample(source, source.size(), line(n, m * spacing, radians));
-  return with_alpha_of(source, resample(far, source.size(), line(m, spacing, radians)));
+  const glm::dvec2 direction(std::cos(radians), -std::sin(radians));
+  const double across = glm::max(std::abs(direction.x), std::abs(direction.y));
+  const glm::dvec2 step = direction / across;
+  const double length = glm::min(distance * across, 127.0 * 129.0);
+  int n = 1;
+  if (length > 35)
+    while (n * (n + 2) < length) n += 2;
+  const DoubleImage near = resample(source, source.size(), mean_of_line(length / n, step));
+  return with_alpha_of(source, n == 1 ? near : resample(near, source.size(), pieces(n, length / n, step)));
 }
 
 }  // namespace afterglow::reference

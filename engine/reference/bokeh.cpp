@@ -30,8 +30,20 @@ struct BokehWay {
   double softness() const { return aside() + square(spacing()) / 12; }
 };
 
-constexpr std::array<BokehWay, 7> kBokehWays{
-    {{0, 1, 1}, {2.5, 1, 2}, {5, 2, 1}, {11, 3, 1}, {16, 4, 1}, {28, 6, 1}, {40, 8, 1}}};
+constexpr std::array<BokehWay, 14> kBokehWays{{{0, 1, 1},
+                                               {2.5, 1, 2},
+                                               {5, 2, 1},
+                                               {11, 3, 1},
+                                               {16, 4, 1},
+                                               {28, 6, 1},
+                                               {40, 8, 1},
+                                               {56, 12, 1},
+                                               {80, 16, 1},
+                                               {112, 24, 1},
+                                               {160, 32, 1},
+                                               {224, 48, 1},
+                                               {320, 64, 1},
+                                               {448, 96, 1}}};
 
 struct Aperture {
   int blades;
@@ -74,6 +86,7 @@ std::vector<Tap2d> reads(const Aperture& iris, double radius, double rim, int st
       if (weight > 0) taps.push_back({static_cast<double>(i * step), static_cast<double>(j * step), weight});
       sum += weight;
     }
+  if (sum == 0) return {{0, 0, 1}};
   for (auto& tap : taps) tap.weight /= sum;
   return taps;
 }
@@ -105,17 +118,18 @@ std::vector<Tap> bokeh_tent(int side) {
 }  // namespace
 
 DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& s) {
+  const double radius = glm::min(s.radius, 672.0);
   DoubleImage image = source;
   for (auto& p : image.pixels) {
     const double y = glm::min(luminance(Rgb(p)), 1.0), weight = 1 + s.highlights * y * y;
     p = Rgba(Rgb(p) * weight, weight);
   }
   const auto next =
-      std::find_if(kBokehWays.begin(), kBokehWays.end(), [&](const BokehWay& way) { return way.from > s.radius; });
+      std::find_if(kBokehWays.begin(), kBokehWays.end(), [&](const BokehWay& way) { return way.from > radius; });
   const BokehWay way = *(next - 1);
   double soft = way.softness();
   if (next != kBokehWays.end()) {
-    const double part = (square(s.radius) - square(way.from)) / (square(next->from) - square(way.from));
+    const double part = (square(radius) - square(way.from)) / (square(next->from) - square(way.from));
     soft += square(part) * (next->softness() - soft);
   }
   if (way.side > 1) {
@@ -123,7 +137,7 @@ DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& s) {
     image = resample(image, small, {.x = bokeh_tent(way.side), .y = bokeh_tent(way.side)});
   }
   const Aperture iris{s.blades, s.rotation * std::numbers::pi / 180};
-  image = resample(image, image.size(), {.taps = compensated(iris, s.radius, way, soft)});
+  image = resample(image, image.size(), {.taps = compensated(iris, radius, way, soft)});
   if (way.step == 2)
     image = resample(image, image.size(), {.taps = {{-.5, -.5, .25}, {.5, -.5, .25}, {-.5, .5, .25}, {.5, .5, .25}}});
   if (way.side > 1)

@@ -94,12 +94,15 @@ DoubleImage map_color(const DoubleImage& image, F&& f) {
 /// What straight colour is divided by: alpha, at most 65504, or 1 where there is none (math.md §19).
 inline double cover(const Rgba& p) { return cover_of(p.a); }
 
-/// As `map_color` with f seeing straight colour: divided by alpha before, multiplied by it behind.
+/// As `map_color` with f seeing straight colour: divided by alpha before, multiplied by it behind. Where alpha is 0,
+/// without what f makes of black.
 template <class F>
 DoubleImage map_straight(const DoubleImage& image, F&& f) {
   return generate(image.size(), [&](int x, int y) {
     const Rgba& p = image.at(x, y);
-    return Rgba(f(Rgb(p) / cover(p)) * cover(p), p.a);
+    const Rgb made = f(Rgb(p) / cover(p));
+    if (p.a >= double(kLeastAlpha)) return Rgba(made * cover(p), p.a);
+    return Rgba(glm::max(made - f(Rgb(0)), glm::min(made, 0.0)), p.a);
   });
 }
 

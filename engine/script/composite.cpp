@@ -133,8 +133,8 @@ class MaskBuilder {
  private:
   Part named(const EntryRun& run) {
     if (why_inactive(lua_, run)) return 0.0;
-    const bool straight = Runtime::of(lua_).effects[static_cast<std::size_t>(run.effect)].schema.straight;
-    graph_.begin(run.entry, used_inputs(lua_, run), straight, "mask.");
+    const EffectSchema& effect = Runtime::of(lua_).effects[static_cast<std::size_t>(run.effect)].schema;
+    graph_.begin(run.entry, used_inputs(lua_, run), &effect, "mask.");
     const ImageRef image = run_build(lua_, run, graph_, source_);
     graph_.end();
     graph_.tell_warnings(*Runtime::of(lua_).box->diagnostics);
@@ -151,7 +151,7 @@ class MaskBuilder {
                           number_argument("offset", offset)});
   }
   ImageRef pass(const std::string& what, std::vector<Argument> arguments) {
-    graph_.begin(owner_.entry, {}, false, "mask.");
+    graph_.begin(owner_.entry, {}, nullptr, "mask.");
     PassRequest request;
     request.name = what;
     request.shader = "composite/mask_" + what;

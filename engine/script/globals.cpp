@@ -264,6 +264,8 @@ void open_globals(lua_State* lua) {
     lua_pushcfunction(lua, function);
     set_global(lua, name);
   }
+  lua_createtable(lua, 0, 2);  // in place of Lua's
+  lua_setfield(lua, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
   push_string_library(lua);
   set_global(lua, "string");
   push_table_library(lua);
@@ -274,8 +276,6 @@ void open_globals(lua_State* lua) {
   // The global table that Lua itself knows stays empty: chunks get environments of their own.
   lua_createtable(lua, 0, 0);
   lua_rawseti(lua, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
-  lua_createtable(lua, 0, 0);
-  lua_setfield(lua, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
 }
 
 }  // namespace afterglow::script

@@ -44,6 +44,13 @@ const char* value_text(ParamType type) {
   return "";
 }
 
+/// Where an effect promises for all settings that black stays black, it need not be asked what it makes of it.
+bool may_light_black(const EffectSchema& effect) {
+  return std::ranges::none_of(effect.invariants, [](const InvariantSchema& promise) {
+    return promise.stated.name == "black" && !promise.conditional;
+  });
+}
+
 }  // namespace
 
 GraphBuilder::GraphBuilder(const BuildContext& context, ShaderLibrary& shaders, std::uint64_t build)
@@ -56,10 +63,11 @@ ImageId GraphBuilder::add_image(std::string name, Size size, int producer) {
   return static_cast<ImageId>(graph_.images.size()) - 1;
 }
 
-void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs, bool straight,
+void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs, const EffectSchema* effect,
                          const std::string& prefix) {
   entry_ = &entry;
-  straight_ = straight;
+  straight_ = effect && effect->straight;
+  lights_black_ = straight_ && prefix.empty() && may_light_black(*effect);
   prefix_ = prefix;
   inputs_ = std::move(inputs);
   skip_reason_.reset();
@@ -174,6 +182,7 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
   if (straight_ && pass.kind != PassKind::pixel)
     fail(pass, "alpha = \"straight\" is for effects whose shaders are pixel shaders (apply)", {"shader"});
   pass.straight = straight_;
+  pass.lights_black = lights_black_;
   if (pass.reach && pass.kind == PassKind::pixel)
     fail(pass, "a pixel shader reads its own pixel alone; leave out reach", {"reach"});
   if (pass.reach && !(*pass.reach >= 0 && *pass.reach <= kMaxSide))

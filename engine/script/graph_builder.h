@@ -83,9 +83,10 @@ class GraphBuilder {
   double length_scale() const { return length_scale_; }
   void scale_lengths(double scale) { length_scale_ = scale; }
 
-  /// Passes that follow belong to this entry. `inputs`: auxiliary images that it may ask for. `straight`: its effect
-  /// wants straight colour, see Pass::straight. `prefix` stands before the names of its passes: "glow.mask.luma".
-  void begin(const StackEntry& entry, std::vector<std::string> inputs, bool straight = false,
+  /// Passes that follow belong to this entry. `inputs`: auxiliary images that it may ask for. `effect`: whose shaders
+  /// may want straight colour, see Pass::straight; null: none does. `prefix` stands before the names of its passes,
+  /// whose values are no colours: "glow.mask.luma".
+  void begin(const StackEntry& entry, std::vector<std::string> inputs, const EffectSchema* effect = nullptr,
              const std::string& prefix = "");
   const StackEntry& entry() const { return *entry_; }
 
@@ -150,7 +151,7 @@ class GraphBuilder {
   Graph graph_;
   const StackEntry* entry_ = nullptr;
   std::vector<std::string> inputs_;
-  bool straight_ = false;
+  bool straight_ = false, lights_black_ = false;  ///< as those of Pass
   std::vector<std::string> warnings_;
   std::string prefix_;
   /// Of the present entry: histories that wait for `keep`, and the places that asked for them.

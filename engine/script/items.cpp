@@ -93,6 +93,7 @@ class ItemReader {
       table_.fail(failure(fmt::format("{}: a look with volumes cannot stand in a group or a mix", table_.what()), at));
     for (const auto& [key, given] : {std::pair{"input_space", !stack.input_space.empty()},
                                      {"gamut", !stack.gamut.empty()},
+                                     {"alpha", !stack.alpha.empty()},
                                      {"reference_height", stack.reference_height.has_value()}})
       if (given) {
         Error place;

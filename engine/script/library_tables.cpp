@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "core/saturated.h"
 #include "script/absent.h"
 #include "script/globals.h"
 #include "script/metatables.h"
@@ -28,6 +29,15 @@ void pick(lua_State* lua, std::initializer_list<const char*> names) {
 void set(lua_State* lua, const char* name, lua_CFunction function) {
   lua_pushcfunction(lua, function);
   lua_setfield(lua, -2, name);
+}
+
+/// Lua's own messages about functions that are called by those below name them by this table, on top of the stack:
+/// "bad argument #2 to 'string.format'". Scripts do not reach it there.
+void name_functions(lua_State* lua, const char* library) {
+  luaL_getsubtable(lua, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+  lua_pushvalue(lua, -2);
+  lua_setfield(lua, -2, library);
+  lua_pop(lua, 1);
 }
 
 // ---- string
@@ -59,12 +69,14 @@ int string_format(lua_State* lua) {
 int string_rep(lua_State* lua) {
   std::size_t size = 0, separator = 0;
   luaL_checklstring(lua, 1, &size);
-  luaL_checkinteger(lua, 2);
+  const lua_Integer count = luaL_checkinteger(lua, 2);
   luaL_optlstring(lua, 3, "", &separator);
   if (size + separator == 0) {
     lua_pushliteral(lua, "");
     return 1;
   }
+  if (count > 0)
+    Sandbox::of(lua).will_hold(lua, saturated_product({static_cast<std::uint64_t>(count), size + separator}));
   lua_pushvalue(lua, lua_upvalueindex(1));
   lua_insert(lua, 1);
   call(lua, lua_gettop(lua) - 1, 1);
@@ -193,6 +205,7 @@ int table_sort(lua_State* lua) {
 
 void push_string_library(lua_State* lua) {
   luaopen_string(lua);
+  name_functions(lua, "string");
   lua_getfield(lua, -1, "format");
   lua_pushcclosure(lua, (&native<string_format, "format">), 1);
   lua_getfield(lua, -2, "rep");
@@ -217,6 +230,7 @@ void push_string_library(lua_State* lua) {
 
 void push_table_library(lua_State* lua) {
   luaopen_table(lua);
+  name_functions(lua, "table");
   lua_getfield(lua, -1, "sort");
   lua_pushcclosure(lua, (&native<table_sort, "sort">), 1);
   lua_insert(lua, -2);

@@ -17,6 +17,7 @@
 #include "script/object.h"
 #include "script/requirement.h"
 #include "script/runtime.h"
+#include "script/syntax_hint.h"
 #include "script/value.h"
 
 namespace afterglow::script {
@@ -272,6 +273,7 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
   if (status != LUA_OK) {
     Error error{ErrorKind::script, lua_tostring(lua, -1), file.string()};
     box.locate(error, box.take_prefix(error.message));
+    name_symbol(error, text);
     throw ScriptError{std::move(error)};
   }
   push_environment(lua);

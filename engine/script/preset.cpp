@@ -48,6 +48,7 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   reference_height = stack.reference_height;
   input_space = stack.input_space;
   gamut = stack.gamut;
+  alpha = stack.alpha;
   for (auto& declared : stack.entries) {
     const auto& schema = runtime->effects[static_cast<std::size_t>(declared.effect)].schema;
     for (std::size_t i = 0; i < schema.settings.size(); ++i)

@@ -138,6 +138,7 @@ struct BuildContext {
   /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings
   /// in px are lengths of that picture. A stack's `reference_height` goes before it.
   double length_scale = 1;
+  std::vector<std::string> asked = {};                  ///< inputs that it was read for, also those that it has not
   std::vector<std::string> layers = {};                 ///< names of all layers that it has, for messages
   std::shared_ptr<const Metadata> metadata = {};        ///< of its file; null: unknown
   std::filesystem::path picture = {};                   ///< its file; empty: unknown

@@ -65,7 +65,8 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
     skip(entry, std::move(*why), graph, diagnostics);
     return source;
   }
-  graph.begin(entry, used_inputs(lua, run), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
+  const EffectSchema& effect = runtime->effects[static_cast<std::size_t>(run.effect)].schema;
+  graph.begin(entry, used_inputs(lua, run), alpha == "associated" ? nullptr : &effect);
   const ImageRef image = run_build(lua, run, graph, source);
   graph.end();
   graph.tell_warnings(diagnostics);

@@ -22,7 +22,7 @@ using namespace script;
 struct Preset::State {
   std::unique_ptr<Runtime> runtime;
   ShaderLibrary* shaders = nullptr;
-  std::string file, name, input_space, gamut;
+  std::string file, name, input_space, gamut, alpha;
   std::optional<double> max_error;
   std::optional<int> reference_height;
   double length_scale = 1;                                 // of the settings in `runs`

@@ -87,6 +87,7 @@ struct DeclaredStack {
   std::optional<Animated> position;
   std::string input_space;              ///< that pictures are stored in; empty: what they say
   std::string gamut;                    ///< "cut" or "keep"; empty: not said
+  std::string alpha;                    ///< "straight" or "associated"; empty: not said
   std::optional<int> reference_height;  ///< of the picture whose pixels lengths are given in
   std::vector<DeclaredEntry> entries;   ///< in the preset's order
   std::vector<DeclaredVolume> volumes;  ///< the same

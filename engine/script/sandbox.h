@@ -120,6 +120,10 @@ class Sandbox {
   Location take_prefix(std::string& message) const;
 
   std::size_t memory_used() const { return used_; }
+  /// A script is about to ask for so many bytes at once: where, for the message if there is no room for them.
+  void will_hold(lua_State* lua, std::uint64_t bytes) {
+    if (bytes > limits_.memory / 2) heavy_ = caller(lua);
+  }
   /// Messages of `print`; null: dropped.
   Diagnostics* diagnostics = nullptr;
   const Blame* blame = nullptr;

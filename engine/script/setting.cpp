@@ -50,8 +50,13 @@ namespace {
 
 constexpr double kMaxInteger = 2147483647;
 
-bool in_range(const SettingSchema& schema, double value) {
-  return (!schema.min || value >= *schema.min) && (!schema.max || value <= *schema.max);
+/// The value within the bounds. What goes beyond one by less than a 32-bit float tells, as sums of animated values do
+/// (0.05 + 0.9 is more than 0.95), is the bound; none: out of range.
+std::optional<double> within(const SettingSchema& schema, double value) {
+  const auto same = [&](double bound) { return static_cast<float>(value) == static_cast<float>(bound); };
+  if (schema.min && value < *schema.min) return same(*schema.min) ? schema.min : std::nullopt;
+  if (schema.max && value > *schema.max) return same(*schema.max) ? schema.max : std::nullopt;
+  return value;
 }
 
 // Shaders get 32-bit floats.
@@ -145,10 +150,10 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
       if (given.kind != Kind::number) return fail(integer ? "not an integer" : "not a number");
       if (!std::isfinite(given.number)) return fail("not finite");
       if (integer && given.number != std::floor(given.number)) return fail("not an integer");
-      if (!in_range(schema, given.number) || (integer && std::abs(given.number) > kMaxInteger))
-        return fail("out of range");
-      if (!fits_float(given.number)) return fail(kTooLarge);
-      value.number[0] = given.number + 0.0;  // −0 becomes 0
+      const auto held = within(schema, given.number);
+      if (!held || (integer && std::abs(*held) > kMaxInteger)) return fail("out of range");
+      if (!fits_float(*held)) return fail(kTooLarge);
+      value.number[0] = *held + 0.0;  // −0 becomes 0
       return value;
     }
     case SettingType::boolean:
@@ -185,9 +190,10 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
       for (int i = 0; i < given.count; ++i) {
         const double c = given.list[static_cast<std::size_t>(i)];
         if (!std::isfinite(c)) return fail("not finite");
-        if (!in_range(schema, c) || (color && c < 0)) return fail("out of range");
-        if (!fits_float(c)) return fail(kTooLarge);
-        value.number[static_cast<std::size_t>(i)] = c + 0.0;
+        const auto held = within(schema, c);
+        if (!held || (color && c < 0)) return fail("out of range");
+        if (!fits_float(*held)) return fail(kTooLarge);
+        value.number[static_cast<std::size_t>(i)] = *held + 0.0;
       }
       return value;
     }

@@ -108,6 +108,13 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
       table.fail(failure(fmt::format("{}: gamut = \"{}\"", table.what(), tidy_message(*gamut, 40)), {"gamut"},
                          join(words), nearest_name(*gamut, words)));
   }
+  if (const auto alpha = table.text("alpha")) {
+    stack.alpha = *alpha;
+    const std::vector<std::string> words{"straight", "associated"};
+    if (std::ranges::find(words, *alpha) == words.end())
+      table.fail(failure(fmt::format("{}: alpha = \"{}\"", table.what(), tidy_message(*alpha, 40)), {"alpha"},
+                         join(words), nearest_name(*alpha, words)));
+  }
   if (const auto height = table.integer("reference_height")) stack.reference_height = height;
   if (stack.reference_height && (*stack.reference_height < 1 || *stack.reference_height > 16384))
     table.fail(failure(fmt::format("{}: reference_height = {} is out of range", table.what(), *stack.reference_height),
@@ -129,8 +136,8 @@ void push_stack(lua_State* lua, DeclaredStack stack) {
 }
 
 const std::vector<std::string>& stack_keys() {
-  static const std::vector<std::string> keys{"gamut",    "input_space",      "max_error", "name",
-                                             "position", "reference_height", "requires"};
+  static const std::vector<std::string> keys{"alpha", "gamut",    "input_space",      "max_error",
+                                             "name",  "position", "reference_height", "requires"};
   return keys;
 }
 

@@ -27,7 +27,9 @@ struct LiveStack::State {
 namespace {
 
 /// Frames of the same shape are made by the same program, unless the preset says otherwise.
-bool same_shape(const BuildContext& a, const BuildContext& b) { return a.size == b.size && a.auxiliary == b.auxiliary; }
+bool same_shape(const BuildContext& a, const BuildContext& b) {
+  return a.size == b.size && a.auxiliary == b.auxiliary && a.asked == b.asked;
+}
 
 }  // namespace
 
@@ -114,6 +116,7 @@ void LiveStack::build_for_frame() {
 }
 
 std::uint64_t LiveStack::stacks_taken() const { return state_->stacks_taken; }
+std::vector<std::string> LiveStack::wants() const { return state_->builder.wants(); }
 bool LiveStack::building() const { return state_->builder.building(); }
 
 void LiveStack::set_overrides(std::vector<Override> overrides) {

@@ -29,6 +29,9 @@ struct LiveOptions {
   bool warm_up = false;
   bool follow = true;  ///< watch the files; false: only `LiveStack::reload` looks at them
   WatchOptions watch;
+  /// The host reads inputs as looks want them (LiveStack::wants): a look that wants more than the context was read for
+  /// (BuildContext::asked) waits for a context that was, and the one before it runs on.
+  bool inputs_follow = false;
   /// Called on other threads when `update` would change something or `status` has changed: to wake a drawing thread
   /// that sleeps. Must not call back into the LiveStack.
   std::function<void()> notify;
@@ -118,6 +121,8 @@ class LiveStack {
 
   /// Any thread.
   LiveStatus status() const;
+  /// Inputs that the look that waits for them wants. Empty: none waits.
+  std::vector<std::string> wants() const;
   /// Blocks until every change so far is built (`update` has not taken it yet) or has failed; what changes from now on
   /// is not waited for. For tests and for programs that render a fixed number of frames.
   void settle();

@@ -207,13 +207,34 @@ Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, const std::shar
   AFTERGLOW_TRY(built.stack, Stack::load(preset_, options, *built.diagnostics));
   built.stack->show(request.shown);
   built.stack->use(device_, options_.own_images);
-  if (request.context) {
+  if (request.context && not_asked(*built.stack, request).empty()) {
     Basis made{.build = {}, .work = {}, .choice = built.stack->choice()};
     AFTERGLOW_TRY(made.build, built.stack->evaluate(*request.context));
     AFTERGLOW_TRY(made.work, built.stack->work({.build = made.build, .encoding = request.encoding}));
     work = std::move(made);
   }
   return built;
+}
+
+/// What a look wants of pictures that were not read for it.
+std::vector<std::string> LiveBuilder::not_asked(Stack& stack, const LiveRequest& request) const {
+  std::vector<std::string> out;
+  if (!options_.inputs_follow || !request.context) return out;
+  (void)stack.preset().note_needs(*request.context);  // what is wrong there is wrong when it is evaluated
+  std::ranges::copy_if(stack.preset().needs(), std::back_inserter(out), [&](const std::string& name) {
+    return std::ranges::find(request.context->asked, name) == request.context->asked.end();
+  });
+  return out;
+}
+
+/// Whoever reads pictures comes with another context, and that is built for.
+void LiveBuilder::await_inputs(std::vector<std::string> wants) {
+  {
+    const std::lock_guard lock(mutex_);
+    wants_ = std::move(wants);
+    gave_up_.reset();
+  }
+  notify();
 }
 
 bool LiveBuilder::Basis::serves(const Basis& other) const {
@@ -234,6 +255,10 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
   if (files_.follow(*record->looks())) want_look();
   times.script = milliseconds_since(start);
   if (!built) return std::move(built).error();
+  if (auto wants = not_asked(*built->stack, request); !wants.empty()) {
+    await_inputs(std::move(wants));
+    return {};
+  }
   built->files = record->looks();
   if (work && basis_ && !request.for_frame && basis_->serves(*work)) {
     times.kind = BuildTimes::Kind::values;
@@ -317,6 +342,7 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
     if (!both) parts_.times = times;
     parts_.done = published_at_ = Clock::now();
     gave_up_.reset();
+    wants_.clear();
     status_.error.reset();
     status_.source_line.clear();
   }
@@ -344,6 +370,11 @@ void LiveBuilder::fail(Error error) {
     status_.source_line = std::move(line);
   }
   notify();
+}
+
+std::vector<std::string> LiveBuilder::wants() const {
+  const std::lock_guard lock(mutex_);
+  return wants_;
 }
 
 BuiltParts LiveBuilder::take() {

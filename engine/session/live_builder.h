@@ -73,6 +73,7 @@ class LiveBuilder {
   void release(BuiltStack stack);  ///< destroys it on the builder's thread
   void forward(const std::function<void(LiveStatus&, LiveStack::Counters&)>& apply);
   LiveStatus status() const;
+  std::vector<std::string> wants() const;  ///< see LiveStack
   bool building() const;
   LiveStack::Counters counters() const;
 
@@ -102,6 +103,8 @@ class LiveBuilder {
   Result<BuiltStack> load(const LiveRequest& request, const std::shared_ptr<FileRecord>& record,
                           std::optional<Basis>& work);
   BuiltStack new_stack();
+  std::vector<std::string> not_asked(Stack& stack, const LiveRequest& request) const;
+  void await_inputs(std::vector<std::string> wants);
   void publish(BuiltStack built, const BuildTimes& times);
   void fail(Error error);
   void give_up(bool for_frame);
@@ -134,6 +137,7 @@ class LiveBuilder {
   std::shared_ptr<Until> until_;              ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};
   BuiltParts parts_;
+  std::vector<std::string> wants_;
   std::vector<BuiltStack> dead_;
   LiveStatus status_;
   LiveStack::Counters counters_;

@@ -61,6 +61,7 @@ BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
+  context.asked = picture.asked;
   context.layers = picture.layers;
   note_files(picture.facts, context);
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();

@@ -337,7 +337,7 @@ class Assembler {
     const std::string prefix = fmt::format("ag_s{}_", stage_count_);
     AFTERGLOW_TRY(const auto values, constants(stage, prefix));
     StorageReaders readers;
-    std::string arguments = "ag_color";
+    std::string arguments;  // behind the colour
     for (const auto& input : source.interface.inputs) {
       if (const auto value = stage.values.find(input.name); value != stage.values.end()) {
         arguments += fmt::format(", ag_value{}", value->second);
@@ -368,9 +368,20 @@ class Assembler {
     else if (info_of(kind).begins)
       every_row("vec4 ag_color{0} = " + function + "(ag_pixel{0});");
     else
-      row_ += fmt::format("  ag_color = {}({});\n", function, arguments);
+      row_ += apply(stage, function, arguments);
     ++stage_count_;
     return {};
+  }
+
+  /// A pixel stage's colour. Where nothing covers the pixel, only what the stage makes of light that is there all the
+  /// same: as math.md §19 has it, and never less than black.
+  std::string apply(const KernelStage& stage, const std::string& function, const std::string& arguments) const {
+    std::string out = fmt::format("  ag_color = {}(ag_color{});\n", function, arguments);
+    if (!stage.straight || !stage.lights_black) return out;
+    return out + fmt::format(
+                     "  ag_color.rgb = mix(ag_color.rgb, max(ag_color.rgb - {0}(vec4(vec3(0.0), ag_alpha{2}){1}).rgb, "
+                     "min(ag_color.rgb, 0.0)), bvec3(ag_alpha{2} < 1.17549435e-38));\n",
+                     function, arguments, divisions_);
   }
 
   /// Each row's colour by a sample shader, within what is done to a row, so that rows take turns and share their reads.

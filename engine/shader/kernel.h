@@ -32,6 +32,8 @@ struct KernelStage {
   /// Its colour is divided by its alpha before and multiplied behind (by what math.md §19 makes of it); of neighbours
   /// that want it, once around all. What such a stage returns as alpha does not count.
   bool straight = false;
+  /// Of a straight stage: what it makes of black is taken away where alpha is 0.
+  bool lights_black = false;
   /// Of a sample stage: how far it reads (graph/graph.h). A hint: no text depends on it.
   std::optional<double> reach = {};
   /// Of a pixel stage: the number of the colour that flows into `apply`, or kOwnImage. Nothing: that of the stage

@@ -9,7 +9,7 @@ namespace {
 
 bool same_stage(const KernelStage& a, const KernelStage& b) {
   const auto all = [](const KernelStage& s) {
-    return std::tie(s.shader, s.constants, s.straight, s.color, s.values, s.again, s.channels);
+    return std::tie(s.shader, s.constants, s.straight, s.lights_black, s.color, s.values, s.again, s.channels);
   };
   return all(a) == all(b);
 }

@@ -219,7 +219,10 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
   const View& view = player.view();
   std::vector<std::pair<ImU32, std::string>> lines;
   if (const std::string& image = player.live().shown(); !image.empty()) {
-    lines.emplace_back(ui_color::kAccent, "image: " + image);
+    const std::vector<std::string> images = player.live().images();
+    const bool there = images.empty() || std::ranges::find(images, image) != images.end();
+    lines.emplace_back(there ? ui_color::kAccent : ui_color::kWarning,
+                       there ? "image: " + image : "no image " + image + ": the result");
   }
   if (player.proxy() > 1) lines.emplace_back(ui_color::kAccent, "proxy " + proxy_name(player.proxy()));
   if (!ui.display.empty())

@@ -21,6 +21,12 @@ bool Panel::save(PanelPort& port) {
   return false;
 }
 
+/// What goes wrong stands over the panel's end.
+void Panel::undo_save(Ui& ui, PanelPort& port) {
+  save_.undo(port, bases_);
+  if (!save_.failed()) ui.say(save_.message());
+}
+
 namespace {
 
 std::string name_of(const SettingEdit& edit) {
@@ -58,7 +64,10 @@ std::string Panel::unsaved(PanelPort& port) const {
 void Panel::turn(Ui& ui, PanelPort& port) {
   if (save_.poll(port, bases_)) ui.say(save_.message());
   if (const auto copy = save_.take_copy()) ui.open(copy->string());
-  if (stack_.poll(port, !save_.busy())) ui.say(stack_.message());
+  if (stack_.poll(port, !save_.busy())) {
+    ui.say(stack_.message());
+    if (!stack_.failed()) chosen_ = stack_.called_now(chosen_);
+  }
   const bool told = std::exchange(conflict_told_, stack_.conflict());
   if (stack_.conflict() && !told) ui.say(conflict_text());
   // What was asked for before is part of what is saved.
@@ -71,6 +80,7 @@ void Panel::turn(Ui& ui, PanelPort& port) {
     chosen_ = shown;
     scroll_to_chosen_ = true;
   }
+  act_when_built(ui, port);
   library_.poll();
   if (save_.busy() || stack_.busy() || library_.reading()) ui.again();
   // Other stacks have other entries by the same names.
@@ -168,9 +178,11 @@ void Panel::draw_settings(Ui& ui, PanelPort& port) {
 void Panel::draw_head(Ui& ui, PanelPort& port) {
   const Preset* preset = port.preset();
   ImGui::PushFont(ui.bold);
-  ImGui::TextUnformatted(preset ? preset->name().c_str() : "No preset yet");
+  const std::string name = preset ? preset->name() : "No preset yet";
+  const std::string shown = shortened(name, ImGui::GetContentRegionAvail().x);
+  ImGui::TextUnformatted(shown.c_str());
   ImGui::PopFont();
-  ui.help(save_.file().string());
+  ui.help((shown == name ? "" : name + "\n") + save_.file().string());
   const SettingEdits& edits = port.edits();
   const bool changed = !edits.none();
   if (small_button(ui, save_.busy() ? "Saving…" : "Save", "Write the changes into the preset's file (Ctrl+S)",
@@ -183,7 +195,7 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
   beside("Open…");
   if (small_button(ui, "Open…", "The presets there are, each with this frame (Ctrl+O)")) ui.browse_presets();
   beside("Undo save");
-  if (small_button(ui, "Undo save", "The file as it was before the last save", save_.can_undo())) undo_save(port);
+  if (small_button(ui, "Undo save", "The file as it was before the last save", save_.can_undo())) undo_save(ui, port);
   if (small_button(ui, "Undo", "Ctrl+Z", edits.can_undo())) port.undo();
   beside("Redo");
   if (small_button(ui, "Redo", "Ctrl+Shift+Z", edits.can_redo())) port.redo();

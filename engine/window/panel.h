@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -35,7 +36,7 @@ class Panel {
   // What keys do too.
   /// True: the preset is not to be written over, and a name for a copy is asked for; see keeper_of.
   bool save(PanelPort& port);
-  void undo_save(PanelPort& port) { save_.undo(port, bases_); }
+  void undo_save(Ui& ui, PanelPort& port);
   /// The cursor goes into the search field with the next draw.
   void search() { focus_search_ = true; }
   void add_effect(PanelPort& port);  ///< asks which
@@ -66,10 +67,13 @@ class Panel {
   void draw_settings(Ui& ui, PanelPort& port);
   void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
+  void act_when_built(Ui& ui, PanelPort& port);
   void draw_entry(Ui& ui, PanelPort& port, std::size_t index);
   static void draw_lost(const Ui& ui, PanelPort& port, const Build& build);
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
-  void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, bool changed);
+  struct EntryEnd;
+  EntryEnd entry_end(const Ui& ui, PanelPort& port, const StackEntry& entry, bool skipped) const;
+  void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, const EntryEnd& end);
   void draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry);
   void draw_mask_menu(const StackEntry& entry);
   const StackEntry* entry_named(PanelPort& port, const std::string& name) const;
@@ -89,6 +93,12 @@ class Panel {
   bool conflict_told_ = false;
   StackText text_;      ///< that the bases are of
   std::string chosen_;  ///< the entry that keys are about
+  struct ActDue {
+    EntryAction action;
+    std::string entry;
+    double since = 0;  ///< seconds of Ui::now without a build
+  };
+  std::optional<ActDue> act_due_;  ///< on an entry that is not built yet
   bool scroll_to_chosen_ = false;
   struct {
     std::string effect;

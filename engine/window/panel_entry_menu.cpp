@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "script/build.h"
 #include "script/explanation.h"
@@ -15,6 +16,18 @@ namespace {
 using Kind = StackEdit::Kind;
 
 bool in_file(const StackEntry& entry, const std::filesystem::path& file) { return entry.file == file.string(); }
+
+/// The entry that is chosen when one is removed with its members: that behind it, or else before it; empty: none is
+/// left.
+std::string neighbour_of(PanelPort& port, const std::string& name) {
+  const Build* build = port.build();
+  if (!build) return {};
+  const auto& entries = *build->entries;
+  const auto at = std::ranges::find(entries, name, &StackEntry::name);
+  if (at == entries.end()) return {};
+  const auto index = static_cast<std::size_t>(at - entries.begin()), end = at->end_of(index);
+  return end < entries.size() ? entries[end].name : index > 0 ? entries[index - 1].name : "";
+}
 
 }  // namespace
 
@@ -30,7 +43,9 @@ void Panel::act(Ui& ui, PanelPort& port, EntryAction action) {
   if (port.status().error) return ui.say("The preset has an error: the stack rests until it is mended");
   switch (action) {
     case EntryAction::remove:
-      return stack_.begin({Kind::remove, chosen_});
+      stack_.begin({Kind::remove, chosen_});
+      chosen_ = neighbour_of(port, chosen_);
+      return;
     case EntryAction::duplicate:
       return stack_.begin({Kind::duplicate, chosen_});
     case EntryAction::earlier:
@@ -41,7 +56,10 @@ void Panel::act(Ui& ui, PanelPort& port, EntryAction action) {
       break;
   }
   const StackEntry* entry = entry_named(port, chosen_);
-  if (!entry) return ui.say("the stack has no entry " + chosen_);
+  if (!entry) {
+    if (!act_due_) act_due_ = {action, chosen_, ui.now};
+    return ui.again();
+  }
   if (action == EntryAction::copy) return copy_settings(ui, port, *entry);
   if (action == EntryAction::paste) return paste_settings(ui, port, *entry);
   const auto edited = port.edits().value(chosen_, "enabled");
@@ -50,6 +68,18 @@ void Panel::act(Ui& ui, PanelPort& port, EntryAction action) {
   port.set(chosen_, "enabled", {SettingType::boolean, {on ? 0.0 : 1.0}, ""});
   port.end_gesture();
   ui.say(chosen_ + (on ? " is off" : " is on"));
+}
+
+/// What is done to an entry that was just made waits until it is built.
+void Panel::act_when_built(Ui& ui, PanelPort& port) {
+  constexpr double kPatience = 3;  // seconds without a build
+  if (!act_due_) return;
+  if (act_due_->entry != chosen_) return act_due_.reset();
+  if (stack_.busy() || port.status().building) act_due_->since = ui.now;
+  if (entry_named(port, chosen_)) return act(ui, port, std::exchange(act_due_, std::nullopt)->action);
+  if (ui.now - act_due_->since < kPatience) return ui.again();
+  ui.say("the stack has no entry " + chosen_);
+  act_due_.reset();
 }
 
 void Panel::choose_next(Ui& ui, PanelPort& port, int by) {

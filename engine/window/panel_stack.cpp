@@ -79,6 +79,7 @@ bool PanelStack::poll(PanelPort& port, bool may_begin) {
     message_ = outcome.error->text();
     return true;
   }
+  renamed_ = outcome.rewrite.renamed;
   StackChange change{std::make_shared<const std::string>(std::move(outcome.rewrite.text)), outcome.rewrite.renamed, "",
                      ""};
   // Later ones keep the base of the first.
@@ -152,6 +153,11 @@ void PanelStack::wrote(const std::string& before, std::string after) {
   replace_base(before, std::move(after));
   seen_.reset();
   conflict_ = false;
+}
+
+std::string PanelStack::called_now(const std::string& before) const {
+  const auto found = std::ranges::find(renamed_, before, &std::pair<std::string, std::string>::first);
+  return found == renamed_.end() ? before : found->second;
 }
 
 }  // namespace afterglow

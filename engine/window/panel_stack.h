@@ -38,6 +38,8 @@ class PanelStack {
   void dismiss() { failed_ = false; }
   /// The entry that it was about, by its name now; once. Empty: none, or it is gone.
   std::string take_shown() { return std::exchange(shown_, {}); }
+  /// What an entry is called since the last change, by its name before.
+  std::string called_now(const std::string& before) const;
 
   /// What is to be written in place of the file's text; none: the stack is the file's.
   std::optional<WorkingText> working(PanelPort& port) const;
@@ -73,6 +75,7 @@ class PanelStack {
   std::string now_;                                      ///< the file's text where that is another
   bool conflict_ = false;
   std::string message_, shown_;
+  std::vector<std::pair<std::string, std::string>> renamed_;  ///< by the last change
   bool failed_ = false;
   void start(PanelPort& port);
   void follow(const StackRewrite& rewrite);

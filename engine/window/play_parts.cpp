@@ -67,7 +67,7 @@ void PlayParts::ask_for_range(Ui& ui) {
 /// As it was read, without the look; the preset is told what it is told while it is played.
 ThumbnailFrame PlayParts::thumbnail_frame() const {
   const ShownFrame& shown = player_.shown();
-  ThumbnailFrame out{.picture = player_.source(), .context = {}};
+  ThumbnailFrame out{.picture = player_.source(), .context = {}, .read = player_.reader_with_inputs()};
   out.context.frame = shown.number;
   out.context.fps = player_.transport().fps();
   const auto time = shown.position >= 0 ? player_.footage().frame(shown.position).time : std::nullopt;
@@ -134,16 +134,14 @@ void PlayParts::draw_dialogs(Ui& ui) {
   if (const auto name = range_name_.draw(ui, ImGui::GetIO().DisplaySize)) range_export_.begin(player_, ui, *name);
 }
 
-std::string PlayParts::unsaved(bool closing) {
+std::string PlayParts::unsaved() {
   std::string changes = panel_->unsaved(port_);
   const auto arguments =
       std::ranges::count_if(player_.edits().edits(), [](const auto& edit) { return edit.entry.empty(); });
   if (arguments > 0)
     changes += fmt::format("{}{} {}, which no preset holds: they are given by {}", changes.empty() ? "" : " and ",
                            arguments, arguments == 1 ? "argument" : "arguments", argument_words(player_.edits()));
-  if (!closing || !range_export_.busy()) return changes;
-  const std::string rest = "the rest of an export (" + range_export_.state() + ")";
-  return changes.empty() ? rest : changes + " and " + rest;
+  return changes;
 }
 
 void PlayParts::draw_panel(Ui& ui, ImVec2 place, ImVec2 size) {
@@ -204,10 +202,15 @@ void PlayParts::add_to(WindowOptions& options) {
   options.transport_shape = [](const Ui& ui, float width) { return transport_bar_shape(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
   options.save = [this](Player&, Ui&) { return panel_->save(port_); };
-  options.unsaved = [this](Player&, bool closing) { return unsaved(closing); };
+  options.unsaved = [this](Player&) { return unsaved(); };
   options.dialogs = [this](Player&, Ui& ui) { draw_dialogs(ui); };
   options.strip = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { range_export_.draw(ui, place, size); };
-  options.strip_height = [this](const Ui& ui) { return range_export_.busy() ? ui.px(40) : 0; };
+  options.strip_height = [this](const Ui& ui, float width) { return range_export_.height(ui, width); };
+  options.exporting = [this] {
+    using Saving = WindowOptions::Saving;
+    return range_export_.busy() ? Saving::busy : range_export_.failed() ? Saving::failed : Saving::done;
+  };
+  options.export_state = [this] { return range_export_.state(); };
   options.export_range = [this](Player&, Ui& ui) { ask_for_range(ui); };
   options.saving = [this] {
     const PanelSave& save = panel_->saving();
@@ -220,7 +223,7 @@ void PlayParts::add_to(WindowOptions& options) {
   };
   options.undo_save = [this](Player&, Ui& ui) {
     if (!panel_->saving().can_undo()) return ui.say("nothing was saved");
-    panel_->undo_save(port_);
+    panel_->undo_save(ui, port_);
   };
   options.edit_stack = [this](Player&, Ui& ui, Action action) { return edit_stack(ui, action); };
   options.marks = [this](Player& player, Ui& ui, Action action) { return marks_.act(player, ui, action); };

@@ -28,7 +28,7 @@ class PlayParts {
   bool edit_stack(Ui& ui, Action action);
   void ask_for_range(Ui& ui);
   void draw_dialogs(Ui& ui);
-  std::string unsaved(bool closing);
+  std::string unsaved();
   void draw_panel(Ui& ui, ImVec2 place, ImVec2 size);
   Player& player_;
   PlayerPort port_;

@@ -70,11 +70,17 @@ void RangeExport::poll(Player& player, Ui& ui) {
   const std::string told = outcome ? fmt::format("{} frames written to {}", total_.load(), output_)
                            : ended ? fmt::format("export cancelled: {} of {} frames", done_.load(), total_.load())
                                    : outcome.error().text();
-  ui.say(told);
+  if (!outcome && !ended) {
+    const bool known = first_error_.empty() || told.find(first_error_) != std::string::npos;
+    failure_ = told + (known ? "" : "\nfirst: " + first_error_);
+  } else {
+    ui.say(told);
+  }
   diagnostics_.note("export: " + told);
 }
 
 std::string RangeExport::proposed(Player& player) const {
+  if (failed() && !output_.empty()) return output_;
   if (!setup_.to.empty()) return setup_.to.string();
   const Footage& footage = player.footage();
   const int first = first_picture(player);
@@ -164,18 +170,20 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
 
 void RangeExport::begin(Player& player, Ui& ui, const std::string& output) {
   if (busy()) return ui.say("an export is under way: " + state());
+  output_ = output;
+  failure_.clear();
+  first_error_.clear();
+  ui.again();
   auto wanted = request(player, output);
   if (!wanted) {
-    diagnostics_.note("export: " + wanted.error().text());
-    return ui.say(wanted.error().text());
+    failure_ = wanted.error().text();
+    return diagnostics_.note("export: " + failure_);
   }
-  output_ = output;
   cancelled_ = false;
   done_ = 0;
   total_ = frames_in(range_of(player));
   running_ = std::async(std::launch::async, [this, request = std::move(*wanted)] { return run(request); });
   ui.say("exporting " + range_text(player) + " to " + output);
-  ui.again();
   diagnostics_.note("export: begun, to " + output);
 }
 
@@ -188,7 +196,11 @@ Result<void> RangeExport::run(const BatchRequest& request) {
                                diagnostics_.note(fmt::format("export: {} frames done", done));
                              },
                          .end_progress = [] {},
-                         .failed = [this](const Error& error) { diagnostics_.warn(error.text()); },
+                         .failed =
+                             [this](const Error& error) {
+                               if (first_error_.empty()) first_error_ = error.text();
+                               diagnostics_.warn(error.text());
+                             },
                          .note = [](const std::string&) {},
                          .interrupted = [this] { return cancelled_.load(); }};
   return run_batch(request, events, report);
@@ -198,25 +210,54 @@ std::string RangeExport::state() const {
   return fmt::format("frame {} of {} to {}", std::min(done_ + 1, total_.load()), total_.load(), output_);
 }
 
+float RangeExport::height(const Ui& ui, float width) const {
+  if (busy()) return ui.px(40);
+  if (!failed()) return 0;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float wrap = width - 2 * style.WindowPadding.x;
+  return std::min(ImGui::CalcTextSize(failure_.c_str(), nullptr, false, wrap).y, ui.px(160)) + style.ItemSpacing.y +
+         ImGui::GetFrameHeight() + 2 * style.WindowPadding.y;
+}
+
 void RangeExport::draw(const Ui& ui, ImVec2 place, ImVec2 size) {
   ImGui::SetNextWindowPos(place);
   ImGui::SetNextWindowSize(size);
-  constexpr int kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+  constexpr int kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                         ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing;
   if (ImGui::Begin("Export", nullptr, kFlags)) {
-    const char* label = cancelled_ ? "Cancelling…###cancel" : "Cancel###cancel";
-    const ImGuiStyle& style = ImGui::GetStyle();
-    const float button = ImGui::CalcTextSize(label, nullptr, true).x + 2 * style.FramePadding.x;
-    const float width = ImGui::GetContentRegionAvail().x - button - style.ItemSpacing.x;
-    const auto total = static_cast<float>(std::max<std::size_t>(total_, 1));
-    ImGui::ProgressBar(static_cast<float>(done_) / total, {std::max(width, ui.px(40)), ImGui::GetFrameHeight()},
-                       fmt::format("{} of {}", done_.load(), total_.load()).c_str());
-    ui.help("Exporting " + state());
-    ImGui::SameLine();
-    if (ImGui::Button(label)) cancel();
-    ui.help("Frames that are written stay; a video that is not whole is taken away");
+    if (busy()) {
+      draw_bar(ui);
+    } else {
+      draw_failure(ui);
+    }
   }
   ImGui::End();
+}
+
+void RangeExport::draw_bar(const Ui& ui) {
+  const char* label = cancelled_ ? "Cancelling…###cancel" : "Cancel###cancel";
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float button = ImGui::CalcTextSize(label, nullptr, true).x + 2 * style.FramePadding.x;
+  const float width = ImGui::GetContentRegionAvail().x - button - style.ItemSpacing.x;
+  const auto total = static_cast<float>(std::max<std::size_t>(total_, 1));
+  ImGui::ProgressBar(static_cast<float>(done_) / total, {std::max(width, ui.px(40)), ImGui::GetFrameHeight()},
+                     fmt::format("{} of {}", done_.load(), total_.load()).c_str());
+  ui.help("Exporting " + state());
+  ImGui::SameLine();
+  if (ImGui::Button(label)) cancel();
+  ui.help("Frames that are written stay; a video that is not whole is taken away");
+}
+
+void RangeExport::draw_failure(const Ui& ui) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kError);
+  ImGui::TextWrapped("%s", failure_.c_str());
+  ImGui::PopStyleColor();
+  if (ImGui::Button("Copy")) ui.copy(failure_);
+  ui.help("The message, to the clipboard");
+  ImGui::SameLine();
+  if (ImGui::Button("Dismiss")) failure_.clear();
+  ui.help("Hide the message");
 }
 
 }  // namespace afterglow

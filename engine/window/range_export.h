@@ -35,20 +35,24 @@ class RangeExport {
   void preset_opened(const std::filesystem::path& preset);
   /// In each turn: follows the look, so that an export begins with the last good one; tells what has come of it.
   void poll(Player& player, Ui& ui);
-  /// The name that is proposed: of the range's frames, in the folder of the call.
+  /// The name that is proposed: of the range's frames, in the folder of the call; after a failure the same once more.
   std::string proposed(Player& player) const;
   /// The frames that would be written, for people: "frames 3–12 (10)".
   std::string range_text(Player& player) const;
   /// The first file that would be written over, if there is one.
   std::optional<std::filesystem::path> in_the_way(Player& player, const std::string& output) const;
-  /// Begins; one at a time. Errors, also later ones, are told by `poll`.
+  /// Begins; one at a time. Errors, also later ones, stand in the window until they are dismissed.
   void begin(Player& player, Ui& ui, const std::string& output);
   bool busy() const { return running_.valid(); }
+  /// The last one did, and nobody has dismissed that yet.
+  bool failed() const { return !failure_.empty(); }
   /// Ends it before its next frame: what is written is whole, and a video that is not is taken away.
   void cancel() { cancelled_ = true; }
   /// "frame 3 of 12 to out.mp4"; for who asks before closing.
   std::string state() const;
-  /// A bar with a button that cancels, as a window at this place.
+  /// How high `draw` wants to be; 0: nothing is to be seen.
+  float height(const Ui& ui, float width) const;
+  /// A bar with a button that cancels, or why there is none any more, as a window at this place.
   void draw(const Ui& ui, ImVec2 place, ImVec2 size);
 
  private:
@@ -59,7 +63,11 @@ class RangeExport {
   Diagnostics& diagnostics_;
   std::uint64_t generation_ = 0;
   std::optional<std::string> look_;  ///< the preset's file when the last good look was built
+  void draw_bar(const Ui& ui);
+  void draw_failure(const Ui& ui);
+
   std::string output_;
+  std::string failure_, first_error_;  ///< of the last export; of its frames, while it runs that of its thread alone
   std::atomic<bool> cancelled_ = false;
   std::atomic<std::size_t> done_ = 0, total_ = 0;
   std::future<Result<void>> running_;  // last: it ends before what it uses goes

@@ -35,16 +35,18 @@ struct WindowOptions {
   Part help;                                                        ///< over everything
   /// Ctrl+S; empty: there is no such thing. True: a field is about to get the keyboard.
   std::function<bool(Player&, Ui&)> save;
-  /// What the window would forget when it is closed, or else when another preset is opened, for people: "2 settings of
-  /// look.lua". Empty: nothing.
-  std::function<std::string(Player&, bool closing)> unsaved;
+  /// What the window would forget when it is closed or another preset is opened, for people: "2 settings of look.lua".
+  /// Empty: nothing.
+  std::function<std::string(Player&)> unsaved;
   enum class Saving { busy, done, failed };
   std::function<Saving()> saving;                  ///< what has become of the last `save`
   std::function<void(Player&, Ui&)> export_frame;  ///< S
   std::function<void(Player&, Ui&)> export_range;  ///< Ctrl+R: asks where; a field gets the keyboard
+  std::function<Saving()> exporting;               ///< what has become of the last `export_range`
+  std::function<std::string()> export_state;       ///< while it is busy: "frame 3 of 12 to out.mp4"
   std::function<void(Player&, Ui&)> dialogs;       ///< drawn in each frame, over everything but the help
   Part strip;                                      ///< between picture and transport, while it wants a height
-  std::function<float(const Ui&)> strip_height;
+  std::function<float(const Ui&, float width)> strip_height;
   std::function<void(Player&, Ui&)> undo_save;  ///< takes back the last `save`
   std::function<void(Player&, Ui&)> search;     ///< the keyboard goes to the panel's search
   /// Keys that are about the stack, and Save as. True: a field is about to get the keyboard.

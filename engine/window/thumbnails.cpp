@@ -29,7 +29,8 @@ struct SmallFrame {
 };
 
 SmallFrame small_frame(const ThumbnailFrame& frame) {
-  SmallFrame out{*frame.picture, frame.context};
+  auto whole = frame.read ? frame.read() : Result<Picture>(*frame.picture);
+  SmallFrame out{whole ? std::move(whole).value() : *frame.picture, frame.context};
   const Size display = out.picture.display_window.size();
   const double scale = std::min({static_cast<double>(Thumbnail::kWidth) / std::max(display.width, 1),
                                  static_cast<double>(Thumbnail::kHeight) / std::max(display.height, 1), 1.0});

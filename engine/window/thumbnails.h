@@ -47,6 +47,9 @@ struct ThumbnailOf {
 struct ThumbnailFrame {
   std::shared_ptr<const Picture> picture;  ///< full size; let go of once it was made small
   BuildContext context;                    ///< frame number, time and fps
+  /// The same with inputs that other looks want, asked for on the thread that makes thumbnails. Empty, or an error:
+  /// `picture` has all there is.
+  std::function<Result<Picture>()> read = {};
 };
 
 /// Thread-safe.

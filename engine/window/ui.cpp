@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/ui.h"
 
+#include "core/printable.h"
+
 namespace afterglow {
 
 void Ui::help(const std::string& text) const {
@@ -13,6 +15,17 @@ void Ui::help(const std::string& text) const {
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
+}
+
+std::string shortened(const std::string& text, float width) {
+  const auto fits = [&](const std::string& part) { return ImGui::CalcTextSize(part.c_str()).x <= width; };
+  if (fits(text)) return text;
+  std::string part = text;
+  while (!part.empty()) {
+    part = cut_utf8(part, part.size() - 1);
+    if (fits(part + "…")) break;
+  }
+  return part + "…";
 }
 
 bool wants_menu(const Ui& ui) {

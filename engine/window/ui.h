@@ -95,6 +95,8 @@ struct Ui {
   float px(float size) const { return size * scale; }
 };
 
+/// As much of a text as a width shows, with "…" for the rest. Within a frame of ImGui.
+std::string shortened(const std::string& text, float width);
 /// Gives the keyboard to the item that is drawn next.
 void focus_next_item();
 /// The item that was drawn last is right-clicked, or chosen by the keyboard and its menu asked for.

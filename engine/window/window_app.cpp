@@ -108,6 +108,7 @@ Result<Step> WindowApp::step() {
     redraw_ = std::max(redraw_, 1);
   }
   if (turn.timed && player_.session().all_timed()) redraw_ = std::max(redraw_, 1);
+  if (turn.told) redraw_ = kSettle;
   return turn;
 }
 

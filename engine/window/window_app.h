@@ -35,9 +35,12 @@ class WindowApp {
   void take_events();
   void deliver_input();
   void ask_to_quit(const std::filesystem::path& to_open_then = {});
+  QuitQuestion quit_question() const;
   void leave();
   void answer_quit(QuitAnswer answer);
+  void await_export();
   void quit_when_saved();
+  void ask_about_quitting();
   void input_seen();
   void await_field();
   void go_to_next_pane();
@@ -121,8 +124,10 @@ class WindowApp {
   int redraw_ = 3;   ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
   std::uint64_t tidied_ = 0;  ///< swapchains that were made when memory was given back last
-  // waiting: for a save that was under way when the wish to leave came; saving: for the one that was the answer.
-  enum class Quitting { no, asked, saving, waiting } quitting_ = Quitting::no;
+  // waiting: for a save that was under way when the wish to leave came; saving: for the one that was the answer;
+  // exporting: for the export, with all saved but what `left_` says.
+  enum class Quitting { no, asked, saving, waiting, exporting } quitting_ = Quitting::no;
+  std::string left_;
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented
   std::uint64_t noted_generation_ = 0;

@@ -53,11 +53,7 @@ Result<void> WindowApp::draw() {
   draw_frame_field();
   if (options_.dialogs) options_.dialogs(player_, ui);
   quit_when_saved();
-  if (quitting_ == Quitting::asked) {
-    const std::string changes = options_.unsaved(player_, to_open_then_.empty()) + " would be lost.";
-    const std::string before = to_open_then_.empty() ? "closing" : "opening " + to_open_then_.filename().string();
-    if (const auto answer = draw_quit_dialog(ui, before, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
-  }
+  ask_about_quitting();
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   ui.item_menu = false;
   const ImDrawData& data = interface_->end();
@@ -134,7 +130,7 @@ void WindowApp::draw_parts(Size window) {
     options_.transport(player_, ui, {0, height - bar}, {bar_width, bar});
     mark_pane(Pane::bar, {0, height - bar}, {bar_width, bar});
   }
-  const float strip = options_.strip && options_.strip_height ? options_.strip_height(ui) : 0;
+  const float strip = options_.strip && options_.strip_height ? options_.strip_height(ui, width - panel) : 0;
   if (strip > 0) {
     options_.strip(player_, ui, {0, height - bar - strip}, {width - panel, strip});
     mark_pane(Pane::strip, {0, height - bar - strip}, {width - panel, strip});

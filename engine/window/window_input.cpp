@@ -107,7 +107,7 @@ const char* WindowApp::window_of(Pane pane) const {
     case Pane::bar:
       return options_.transport && ui.show_transport ? "Transport" : "";
     case Pane::strip:
-      return options_.strip_height && options_.strip_height(ui) > 0 ? "Export" : "";
+      return options_.strip_height && options_.strip_height(ui, 0) > 0 ? "Export" : "";
     case Pane::picture:
       break;
   }
@@ -124,20 +124,29 @@ void WindowApp::follow_pane() {
   }
 }
 
-/// What is not in the preset's file is asked about first.
+/// What is not in the preset's file, and not yet exported, is asked about first.
 void WindowApp::ask_to_quit(const std::filesystem::path& to_open_then) {
   redraw_ = kSettle;
-  if (quitting_ != Quitting::no) return;
+  if (quitting_ != Quitting::no && quitting_ != Quitting::exporting) return;
   to_open_then_ = to_open_then;
   if (options_.saving && options_.saving() == WindowOptions::Saving::busy) {
     quitting_ = Quitting::waiting;  // what is being written is no loss
     return window_.restore();       // minimised, nothing goes on
   }
-  const bool unsaved = options_.unsaved && !options_.unsaved(player_, to_open_then.empty()).empty();
-  if (!unsaved) return leave();
+  if (!quit_question().asks()) return leave();
   quitting_ = Quitting::asked;
   window_.restore();  // a question that nobody sees
   diagnostics_.note("asked whether to save");
+}
+
+/// An export goes on beside another preset.
+QuitQuestion WindowApp::quit_question() const {
+  const bool closes = to_open_then_.empty();
+  QuitQuestion out{.before = closes ? "closing" : "opening " + to_open_then_.filename().string()};
+  if (options_.unsaved) out.changes = options_.unsaved(player_);
+  if (closes && options_.exporting && options_.exporting() == WindowOptions::Saving::busy)
+    out.exporting = options_.export_state();
+  return out;
 }
 
 /// Nothing holds the window back from what it was asked for.
@@ -153,22 +162,51 @@ void WindowApp::answer_quit(QuitAnswer answer) {
   redraw_ = kSettle;
   quitting_ = Quitting::no;
   if (answer == QuitAnswer::discard) leave();
-  if (answer != QuitAnswer::save || !options_.save) return;
+  if (answer != QuitAnswer::save) return;
+  if (quit_question().changes.empty()) return await_export();
+  if (!options_.save) return;
   if (options_.save(player_, interface_->ui())) await_field();
   quitting_ = Quitting::saving;
 }
 
-/// A save that fails, or leaves something out, keeps the preset open: it says why. What changed since one that was
-/// under way began is asked about.
+void WindowApp::await_export() {
+  const QuitQuestion question = quit_question();
+  if (question.exporting.empty()) return leave();
+  quitting_ = Quitting::exporting;
+  left_ = question.changes;
+  interface_->ui().say("closes when the export has ended");
+}
+
+/// A save that fails, or leaves something out, keeps the preset open: it says why. So does an export that fails. What
+/// changed since one that was under way began is asked about.
 void WindowApp::quit_when_saved() {
-  if (quitting_ != Quitting::saving && quitting_ != Quitting::waiting) return;
-  const auto state = options_.saving ? options_.saving() : WindowOptions::Saving::done;
+  using Saving = WindowOptions::Saving;
+  if (quitting_ == Quitting::no || quitting_ == Quitting::asked) return;
+  const auto& asked = quitting_ == Quitting::exporting ? options_.exporting : options_.saving;
+  const Saving state = asked ? asked() : Saving::done;
   redraw_ = std::max(redraw_, 1);
-  if (state == WindowOptions::Saving::busy) return;
-  const bool waited = std::exchange(quitting_, Quitting::no) == Quitting::waiting;
-  if (state != WindowOptions::Saving::done) return;
-  if (waited) return ask_to_quit(std::exchange(to_open_then_, {}));
-  leave();
+  if (state == Saving::busy) return;
+  const Quitting was = std::exchange(quitting_, Quitting::no);
+  if (state != Saving::done) return;
+  if (was == Quitting::waiting) return ask_to_quit(std::exchange(to_open_then_, {}));
+  if (was == Quitting::saving) return await_export();
+  if (quit_question().changes == left_) return leave();
+  ask_to_quit();
+}
+
+/// Within a frame. An export that ends while it is asked about need not be asked about.
+void WindowApp::ask_about_quitting() {
+  if (quitting_ != Quitting::asked) return;
+  const QuitQuestion question = quit_question();
+  if (question.asks()) {
+    if (const auto answer = draw_quit_dialog(interface_->ui(), question, ImGui::GetIO().DisplaySize))
+      answer_quit(*answer);
+    return;
+  }
+  quitting_ = Quitting::no;
+  redraw_ = kSettle;
+  const bool failed = options_.exporting && options_.exporting() == WindowOptions::Saving::failed;
+  if (!failed) leave();
 }
 
 /// The frame has seen what it was given. A field that gets the keyboard has it within a few frames: what is typed

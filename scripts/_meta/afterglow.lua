@@ -90,7 +90,7 @@
 ---Colour fringes that grow towards the corners.
 ---@class afterglow.settings.chromatic_aberration : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
----@field samples? integer|afterglow.Moving  3: three sharp pictures. More: a spectrum, even however long the fringes are. integer 3…24, default 6
+---@field samples? integer|afterglow.Moving  3: three sharp pictures. 4 and more, all alike: a spectrum, even however long the fringes are. integer 3…24, default 6
 
 ---Exposure, contrast, colour filter, hue and saturation.
 ---@class afterglow.settings.color_adjustments : afterglow.EntryKeys

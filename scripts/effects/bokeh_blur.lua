@@ -6,8 +6,11 @@ local fx = require "afterglow"
 -- An iris of `from` pixels is four of the smaller pixels wide or more, but for the narrowest: that many reads take as long as the picture is worth.
 local kWays = {
   { from = 0, side = 1, step = 1 }, { from = 2.5, side = 1, step = 2 }, { from = 5, side = 2, step = 1 }, { from = 11, side = 3, step = 1 },
-  { from = 16, side = 4, step = 1 }, { from = 28, side = 6, step = 1 }, { from = 40, side = 8, step = 1 },
+  { from = 16, side = 4, step = 1 }, { from = 28, side = 6, step = 1 }, { from = 40, side = 8, step = 1 }, { from = 56, side = 12, step = 1 },
+  { from = 80, side = 16, step = 1 }, { from = 112, side = 24, step = 1 }, { from = 160, side = 32, step = 1 }, { from = 224, side = 48, step = 1 },
+  { from = 320, side = 64, step = 1 }, { from = 448, side = 96, step = 1 },
 }
+local kWidest = 672  -- pixels: 64 at a tenth of this size, and as many reads as a filter has
 
 -- Mean square of a filter's offsets, whose weights sum up to 1.
 local function variance(taps)
@@ -99,6 +102,7 @@ local function iris(radius, blades, turn, step, rim)
       end
     end
   end
+  if sum == 0 then return { taps = { { 0, 0, 1 } } } end  -- an iris that lies between the sixteenths of one texel
   for _, tap in ipairs(taps) do tap[3] = tap[3] / sum end
   return { taps = taps }
 end
@@ -152,10 +156,11 @@ return fx.effect {
     if s.highlights > 0 then
       image = g:pass { shader = "bokeh_blur/weigh", source = image, highlights = s.highlights, name = "weigh" }
     end
-    local way, rim, soft = way_for(s.radius)
+    local radius = math.min(s.radius, kWidest)
+    local way, rim, soft = way_for(radius)
     local side = way.side
     if side > 1 then image = smaller(g, image, side) end
-    image = g:filter { source = image, filter = compensated(s.radius, s.blades, s.rotation * math.pi / 180, way, rim, soft), name = "iris" }
+    image = g:filter { source = image, filter = compensated(radius, s.blades, s.rotation * math.pi / 180, way, rim, soft), name = "iris" }
     if way.step == 2 then image = g:filter { source = image, filter = fx.filters.box(0.5), name = "fill" } end
     if side > 1 then
       local up = side > 2 and fx.filters.bspline() or fx.filters.bilinear()

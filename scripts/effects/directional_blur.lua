@@ -1,28 +1,38 @@
 -- SPDX-License-Identifier: MIT
--- Directional blur: a camera that moves while the shutter is open. n·m equally spaced reads on a line are m reads close together of an image
--- that has been blurred by n reads far apart, so that 32 reads twice do for a thousand pixels. n·m reads, each for one part of the line, and
--- at most a pixel apart: where their number is the length, they are a pixel apart and the line is even.
+-- Directional blur: a camera that moves while the shutter is open. The mean of the picture along a line, read once for each column that it
+-- crosses (each row, where it is steep) and interpolated between them: weights are integrals, so that no length differs from the next by more
+-- than lengths do. A long line is n pieces laid end to end: the picture blurred along one of them, read n times, so that a hundred reads do for
+-- a thousand pixels.
 local fx = require "afterglow"
 
--- n reads on a line, `spacing` apart.
-local function line(n, spacing, x, y)
-  local taps = {}
-  for i = 1, n do
-    local at = (i - (n + 1) / 2) * spacing
-    taps[i] = { at * x, at * y, 1 / n }
+local kWhole = 35  -- columns up to which one pass reads all
+local kLongest = 127 * 129  -- as many columns as a picture has, and as many reads as a filter has
+
+-- The integral from -∞ to `x` of what a read counts around its place: 1 there, falling to 0 a column away.
+local function counted(x)
+  if x <= -1 then return 0 elseif x >= 1 then return 1 end
+  return x <= 0 and (x + 1) ^ 2 / 2 or 1 - (1 - x) ^ 2 / 2
+end
+
+-- The mean along a line of `length` columns; (x, y) is the step from column to column.
+local function mean(length, x, y)
+  local taps, half = {}, length / 2
+  for i = -math.ceil(half), math.ceil(half) do
+    taps[#taps + 1] = { i * x, i * y, (counted(half - i) - counted(-half - i)) / length }
   end
   return { taps = taps }
 end
 
--- Two counts whose product is at least `reads` and as near to it as it gets, without more reads than by its root.
-local function factors(reads)
-  local root = math.ceil(math.sqrt(reads))
-  local n, m = root, root
-  for near = root, 2 * root do
-    local far = math.ceil(reads / near)
-    if far + near <= 2 * root and far * near < n * m then n, m = far, near end
+-- The mean of `n` reads, `spacing` columns apart, each of the two columns that it lies between.
+local function pieces(n, spacing, x, y)
+  local taps = {}
+  for i = (1 - n) // 2, n // 2 do
+    local column = math.floor(i * spacing)
+    local beyond = i * spacing - column
+    taps[#taps + 1] = { column * x, column * y, (1 - beyond) / n }
+    taps[#taps + 1] = { (column + 1) * x, (column + 1) * y, beyond / n }
   end
-  return n, m
+  return { taps = taps }
 end
 
 return fx.effect {
@@ -38,10 +48,13 @@ return fx.effect {
   build = function(g, s, source)
     local radians = s.angle * math.pi / 180
     local x, y = math.cos(radians), -math.sin(radians)
-    local n, m = factors(math.max(2, math.ceil(s.distance)))
-    local spacing = s.distance / (n * m)
-    local image = g:filter { source = source, filter = line(n, m * spacing, x, y), name = "far" }
-    image = g:filter { source = image, filter = line(m, spacing, x, y), name = "near" }
+    local across = math.max(math.abs(x), math.abs(y))
+    x, y = x / across, y / across
+    local length = math.min(s.distance * across, kLongest)
+    -- An odd number, the next wherever both divide the length into whole columns, and so give the same: 63 is 7·9 and 9·7.
+    local n = length > kWhole and 2 * math.ceil((math.sqrt(1 + length) - 2) / 2) + 1 or 1
+    local image = g:filter { source = source, filter = mean(length / n, x, y), name = "near" }
+    if n > 1 then image = g:filter { source = image, filter = pieces(n, length / n, x, y), name = "far" } end
     return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture
   end,
 }

@@ -5,5 +5,5 @@
 uniform sampler2D noise;
 
 vec4 apply(vec4 color, vec4 original, ivec2 pixel) {
-  return vec4(dithered_color(straight(color.rgb, original.a), fetch(noise, pixel & 63).r), original.a);
+  return vec4(dithered_color(straight(color.rgb, min(original.a, 1.0)), fetch(noise, pixel & 63).r), original.a);
 }

@@ -171,6 +171,77 @@ TEST_F(Effects, LightWithoutCoverageIsGradedAsItIs) {
   EXPECT_NEAR(tone_mapping(glow.source, ToneMode::reinhard).pixels[0].g, 2.0 / 3, 1e-12);
 }
 
+/// Lifted blacks, tables that begin above 0: what an effect makes of light without coverage is that without what it
+/// makes of black, so that empty parts of a layer stay empty and faint glows faint.
+void expect_empty_stays_empty(const std::string& entries, double tolerance) {
+  Scene empty{"empty", DoubleImage(24, 6, Rgba(0)), {}, {}};
+  for (int x = 1; x < 24; ++x)
+    for (int y = 0; y < 6; ++y) empty.source.at(x, y) = Rgba(1e-6 * std::exp2(x) * Rgb(1, 0.1 * y, 1 - 0.15 * y), 0);
+  empty.source = in_floats(empty.source);
+  Scene opaque = empty;
+  for (auto& p : opaque.source.pixels) p.a = 1;
+  for (const Way way : {Way::plain, Way::fused}) {
+    const Made made = run_stack(entries, empty, way), on_black = run_stack(entries, opaque, way);
+    ASSERT_TRUE(made.ran() && on_black.ran()) << entries;
+    const auto of_black = from_floats(on_black.result.data(), {24, 6}, 4).at(0, 0);
+    DoubleImage wanted = from_floats(on_black.result.data(), {24, 6}, 4);
+    for (auto& p : wanted.pixels) p = Rgba(glm::max(Rgb(p) - Rgb(of_black), glm::min(Rgb(p), 0.0)), 0);
+    EXPECT_EQ(Rgb(from_floats(made.result.data(), {24, 6}, 4).at(0, 0)), Rgb(0)) << entries;
+    EXPECT_TRUE(agrees(made.result, wanted, tolerance, kRgba)) << entries;
+  }
+}
+
+TEST_F(Effects, WhatIsEmptyStaysEmptyThroughEveryEffectThatBendsColour) {
+  write_bent_cube();
+  for (const auto& [effect, all] : bending())
+    for (const auto& settings : all)
+      if (effect != "film_grain")  // which differs from pixel to pixel
+        expect_empty_stays_empty(fmt::format("fx.{} {{ {} }}", effect, settings), 1e-6);
+  write_test_file("shaders/bend/square.glsl",
+                  "vec4 apply(vec4 color) { return vec4(0.3 - color.rg * 0.1, color.b * color.b + 0.1, 0.3); }\n");
+  write_test_file("effects/bend.lua",
+                  "local fx = require \"afterglow\"\nreturn fx.effect { name = \"bend\", alpha = \"straight\", build = "
+                  "function(g, s, source) return g:pass { shader = \"bend/square\", source = source } end }\n");
+  expect_empty_stays_empty("fx.bend { }", 1e-6);
+}
+
+/// However passes are joined, each takes away what it makes of black.
+TEST_F(Effects, EmptyPartsOfALayerDoNotDependOnHowPassesAreJoined) {
+  write_bent_cube();
+  const std::string entries =
+      "fx.lift_gamma_gain { lift_offset = 0.1 }, fx.color_adjustments { contrast = -30 }, fx.cdl { offset = { 0.1, 0, "
+      "0.05 }, opacity = 0.5 }, fx.lut { file = \"bent.cube\" }, fx.vignette {}";
+  Scene scene = random_scene({33, 17}, 67);
+  for (std::size_t i = 0; i < scene.source.pixels.size(); ++i)
+    if (i % 3 == 0) scene.source.pixels[i] = i % 2 == 0 ? Rgba(0) : Rgba(Rgb(scene.source.pixels[i]), 0);
+  const Made plain = run_stack(entries, scene, Way::plain), fused = run_stack(entries, scene, Way::fused);
+  const DoubleImage one = from_floats(plain.result.data(), {33, 17}, 4);
+  EXPECT_TRUE(agrees(fused.result, one, 1e-5, kRgba));
+  for (std::size_t i = 0; i < one.pixels.size(); i += 6) EXPECT_EQ(one.pixels[i], Rgba(0)) << i;
+}
+
+/// A disc with a soft edge that glows: where its alpha ends a tone curve leaves a ring, but not where it takes colours
+/// as they are.
+TEST_F(Effects, AssociatedColoursLeaveNoRingAroundWhatGlows) {
+  const std::string entries = "fx.cdl { slope = { 2, 2, 2 } }, fx.tone_mapping { mode = \"reinhard\" }";
+  Scene scene{"glow", DoubleImage(33, 1), {}, {}};
+  for (int x = 0; x < 33; ++x) {
+    const double a = glm::clamp((20.0 - x) / 8, 0.0, 1.0);
+    scene.source.at(x, 0) = Rgba(Rgb(1.5 * a + 0.6 * std::exp(-std::abs(x - 16) / 20.0)), a);
+  }
+  scene.source = in_floats(scene.source);
+  Scene opaque = scene;
+  for (auto& p : opaque.source.pixels) p.a = 1;
+  for (const Way way : {Way::plain, Way::fused}) {
+    const auto as_it_is = run_stack("alpha = \"associated\", " + entries, scene, way);
+    const auto on_black = run_stack(entries, opaque, way), straight = run_stack(entries, scene, way);
+    EXPECT_TRUE(alpha_is_kept(as_it_is, scene));
+    EXPECT_TRUE(agrees(as_it_is.result, from_floats(on_black.result.data(), {33, 1}, 4), 0, kRgb));
+    EXPECT_LT(straight.result[4 * 19], 0.5 * straight.result[4 * 21]) << "the ring";
+    EXPECT_GT(as_it_is.result[4 * 19], as_it_is.result[4 * 21]);
+  }
+}
+
 TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsTiny) {
   Scene scene{"tiny", DoubleImage(3, 1, Rgba(1e30, 1, 0, 1e-30)), {}, {}};
   scene.source = in_floats(scene.source);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "cases.h"
 #include "reference/blurs.h"
@@ -68,8 +69,22 @@ TEST_F(Effects, RadialBlurAgrees) {
   expect_skipped("fx.radial_blur { intensity = 0 }", "intensity is 0");
 }
 
+/// Wherever it is: halves of odd sizes would read some texels twice and others not.
+TEST_F(Effects, DualKawaseKeepsTheLightOfAPoint) {
+  for (const Size size : {Size{301, 301}, Size{250, 125}, Size{256, 128}})
+    for (const double offset : {1.0, 1.4})
+      for (const int x : {40, 83, size.width / 2, size.width / 2 + 1, 170}) {
+        Scene scene{"lamp", DoubleImage(size), {}, {}};
+        scene.source.at(x, size.height / 2) = Rgba(1000, 1000, 1000, 1);
+        const DoubleImage made = dual_kawase(scene.source, 3, offset);
+        double sum = 0;
+        for (const auto& p : made.pixels) sum += p.r;
+        EXPECT_NEAR(sum / 1000, 1, 0.06) << size.width << ' ' << offset << ' ' << x;
+      }
+}
+
 TEST_F(Effects, DirectionalBlurAgrees) {
-  agree_everywhere({smeared(24, 0), smeared(7.5, 90), smeared(100, -33), smeared(0.4, 45)});
+  agree_everywhere({smeared(24, 0), smeared(7.5, 90), smeared(100, -33), smeared(0.4, 45), smeared(40, 180)});
   expect_skipped("fx.directional_blur { distance = 0 }", "distance is 0");
 }
 
@@ -83,13 +98,69 @@ TEST_F(Effects, DirectionalBlurIsAsLongAsItSays) {
   EXPECT_EQ(at(32, 3), 0);
 }
 
+TEST_F(Effects, DirectionalBlurIsTheMeanAlongItsLine) {
+  const Scene scene = random_scene({61, 31}, 66);
+  for (const double distance : {0.6, 3.0, 7.3, 19.5}) {
+    const auto made =
+        run_stack(fmt::format("fx.directional_blur {{ distance = {} }}", distance), scene, Way::plain).result;
+    constexpr int kReads = 4000;
+    for (const int x : {0, 15, 30, 58}) {
+      Rgba sum(0);
+      for (int i = 0; i < kReads; ++i)
+        sum += sample_linear(scene.source, x + 0.5 + distance * ((i + 0.5) / kReads - 0.5), 15.5);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(made[4 * static_cast<std::size_t>(61 * 15 + x) + static_cast<std::size_t>(c)], sum[c] / kReads,
+                    1e-5 * (1 + sum[c] / kReads))
+            << distance << ' ' << x;
+    }
+  }
+}
+
+/// How far apart two smears of a small light are: the sum of the absolute differences, in parts of the light.
+double change(double from, double to, double angle) {
+  const DoubleImage light = generate({141, 141}, [](int x, int y) {
+    return Rgba(Rgb(std::exp(-((x - 70) * (x - 70) + (y - 70) * (y - 70)) / 4.0)), 1);
+  });
+  const DoubleImage a = directional_blur(light, from, angle), b = directional_blur(light, to, angle);
+  double sum = 0, whole = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    sum += std::abs(a.pixels[i].r - b.pixels[i].r);
+    whole += light.pixels[i].r;
+  }
+  return sum / whole;
+}
+
+TEST_F(Effects, DirectionalBlurGrowsWithoutJerks) {
+  for (const double angle : {0.0, 20.0, 45.0, 90.0})
+    for (double distance = 0.2; distance < 120; distance = 1.02 * distance + 0.1)
+      EXPECT_LT(change(distance, 1.002 * distance, angle), 0.005) << distance << ' ' << angle;
+  for (const double columns : {35.0, 63.0, 99.0})  // another number of reads begins
+    for (const double angle : {0.0, 20.0, 45.0}) {
+      const double at = columns / std::cos(angle * std::numbers::pi / 180);
+      EXPECT_LT(change(0.9999 * at, 1.0001 * at, angle), angle == 20 ? 0.05 : 0.001) << columns << ' ' << angle;
+    }
+}
+
 TEST_F(Effects, BokehBlurAgrees) {
   agree_everywhere({defocused({}), defocused({.radius = 3, .blades = 6, .rotation = 20, .highlights = 10}),
                     defocused({.radius = 40, .blades = 5}), defocused({.radius = 0.5, .highlights = 50}),
                     defocused({.radius = 64, .blades = 3, .rotation = -80}), defocused({.radius = 13}),
                     defocused({.radius = 2.6, .blades = 8}), defocused({.radius = 20, .blades = 6, .rotation = 10}),
-                    defocused({.radius = 30})});
+                    defocused({.radius = 30}), defocused({.radius = 0.01}), defocused({.radius = 0.08, .blades = 3})});
   expect_skipped("fx.bokeh_blur { radius = 0 }", "radius is 0");
+}
+
+TEST_F(Effects, LengthsOfASmallReferenceAgreeOnALargePicture) {
+  const Scene scene = neon_scene({160, 90}, 560, 330);
+  const auto agree = [&](const std::string& entries, const DoubleImage& truth) {
+    EXPECT_TRUE(agrees(run_stack(entries, scene, Way::plain).result, truth, kFullFloat, kRgba)) << entries;
+  };
+  for (const double factor : {2.0, 3.0, 7.5, 15.0, 90.0}) {
+    agree(fmt::format("reference_height = {}, fx.bokeh_blur {{ radius = 50, blades = 5 }}", 90 / factor),
+          bokeh_blur(scene.source, {.radius = 50 * factor, .blades = 5}));
+    agree(fmt::format("reference_height = {}, fx.directional_blur {{ distance = 1000, angle = 20 }}", 90 / factor),
+          directional_blur(scene.source, 1000 * factor, 20));
+  }
 }
 
 TEST_F(Effects, BokehOfAPointIsAnEvenDiscOfItsLight) {

@@ -193,6 +193,46 @@ TEST_F(PlayExport, ClosingAsksAndLeavesNothingHalfWritten) {
   EXPECT_EQ(files(".out"), 0);
 }
 
+/// To save is to wait for what is being written, with the window as it is.
+TEST_F(PlayExport, ClosingCanWaitForTheEnd) {
+  ASSERT_NO_FATAL_FAILURE(open_many(600));
+  ASSERT_TRUE(user("mousemove 400 300 key Page_Down key Delete"));  // and a change that is not in the file
+  ASSERT_TRUE(until_color(kX, kY, kGray));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.mp4"));
+  ASSERT_TRUE(program_->wait_for("frames done"));
+  ASSERT_TRUE(user("key q"));
+  ASSERT_TRUE(program_->wait_for("asked whether to save"));
+  ASSERT_TRUE(user("key s"));
+  expect_clean_end();
+  EXPECT_NE(program_->printed().find("export: 600 frames written to out.mp4"), std::string::npos);
+  Diagnostics nowhere;
+  const auto movie = Movie::open(folder_ / "out.mp4", {}, nowhere);
+  ASSERT_TRUE(movie) << movie.error().text();
+  EXPECT_EQ((*movie)->facts().pts.size(), 600u);
+  EXPECT_EQ(text_of("look.lua").find("color_adjustments"), std::string::npos);
+}
+
+/// Why it failed stays in the window, and the name that was typed is proposed again. Such a window stays open.
+TEST_F(PlayExport, AFailureIsToldUntilItIsDismissed) {
+  ASSERT_NO_FATAL_FAILURE(open_many(400));
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+r type missing/out.####.exr"));
+  ASSERT_TRUE(user("key Return"));
+  ASSERT_TRUE(program_->wait_for("export: error"));
+  const auto tells = [&] { return until([&] { return count_color(shot(), {255, 107, 97}) > 10; }); };
+  EXPECT_TRUE(tells());
+  fs::create_directory(folder_ / "missing");
+  ASSERT_TRUE(user("key ctrl+r key Return"));
+  ASSERT_TRUE(program_->wait_for("frames done"));
+  fs::remove_all(folder_ / "missing");
+  ASSERT_TRUE(user("key q"));
+  ASSERT_TRUE(program_->wait_for("asked whether to save"));
+  ASSERT_TRUE(user("key s"));
+  ASSERT_TRUE(program_->wait_for("frames failed"));
+  EXPECT_TRUE(tells());
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayExport, TheButtonCancels) {
   ASSERT_NO_FATAL_FAILURE(open_many(3000));
   ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));

@@ -90,13 +90,13 @@ TEST(Half, SameAsImathAndHeldInRange) {
 }
 
 TEST(EncodeRow, StraightAlphaDividesInLinearLight) {
-  // 0.25 linear under alpha ½ is 0.5 linear; alpha 0 keeps its colour; alpha above 1 divides too.
+  // 0.25 linear under alpha ½ is 0.5 linear; alpha 0 keeps its colour; alpha above 1 is 1.
   const std::vector<float> rgba{0.25f, 0.5f, 0, 0.5f, 0.25f, 1, 0, 0, 0.5f, 0.5f, 0.5f, 2};
   std::vector<std::uint8_t> codes(12);
   encode_row({255, true, false}, rgba.data(), 3, 0, 0, codes.data());
   const auto srgb = [](double v) { return static_cast<std::uint8_t>(std::lround(linear_to_srgb(v) * 255)); };
-  EXPECT_EQ(codes, (std::vector<std::uint8_t>{srgb(0.5), 255, 0, 128, srgb(0.25), 255, 0, 0, srgb(0.25), srgb(0.25),
-                                              srgb(0.25), 255}));
+  EXPECT_EQ(codes, (std::vector<std::uint8_t>{srgb(0.5), 255, 0, 128, srgb(0.25), 255, 0, 0, srgb(0.5), srgb(0.5),
+                                              srgb(0.5), 255}));
   std::vector<std::uint8_t> opaque(9);
   encode_row({255, false, false}, rgba.data(), 3, 0, 0, opaque.data());
   EXPECT_EQ(opaque[0], srgb(0.25));

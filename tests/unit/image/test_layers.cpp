@@ -56,7 +56,11 @@ TEST(Layers, Blender) {
 TEST(Layers, AColourThatIsNotThereIsBlack) {
   EXPECT_THAT(color({part({"G", "R"})}), ElementsAre("R", "G", "-", "-"));
   EXPECT_THAT(color({part({"A", "B", "R"})}), ElementsAre("R", "-", "B", "A"));
+  EXPECT_THAT(color({part({"s.A", "s.B", "s.G"})}, "s"), ElementsAre("-", "s.G", "s.B", "s.A"));
+  EXPECT_THAT(color({part({"s.B", "s.G"})}, "s"), ElementsAre("-", "s.G", "s.B", "-"));
   EXPECT_THAT(color({part({"R"})}), ElementsAre("R", "R", "R", "-")) << "grey";
+  EXPECT_THAT(color({part({"s.A", "s.B"})}, "s"), ElementsAre("s.B", "s.B", "s.B", "s.A")) << "grey";
+  EXPECT_THAT(color({part({"s.A", "s.B", "s.C"})}, "s"), ElementsAre("s.A", "s.B", "s.C", "-")) << "names of nobody";
 }
 
 TEST(Layers, PlainNames) {

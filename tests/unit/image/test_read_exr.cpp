@@ -264,6 +264,27 @@ TEST(ReadExr, WindowsFarApartAreNotJoined) {
   EXPECT_EQ(read_or_fail(folder / "a.exr").data_window, (Rect{5000, 0, 3, 2}));
 }
 
+/// Also where nothing of the picture is inside: an object that has left its frame.
+TEST(ReadExr, CutOverscanLeavesTheFrame) {
+  const TemporaryFolder folder;
+  for (const Imath::V2i& at : {Imath::V2i(-1, 1), Imath::V2i(12, 2), Imath::V2i(5000, 4000)}) {
+    make_exr(folder / "a.exr", std::vector<float>(3 * 6, 1), 3, 2, [&](Imf::Header& h) {
+      h.dataWindow() = {at, at + Imath::V2i(2, 1)};
+      h.displayWindow() = {{0, 0}, {9, 4}};
+    });
+    ReadOptions options;
+    options.cut_overscan = true;
+    Messages messages;
+    const auto picture = read_picture(folder / "a.exr", options, messages.diagnostics);
+    ASSERT_TRUE(picture) << picture.error().text();
+    EXPECT_EQ(picture->data_window, (Rect{0, 0, 10, 5}));
+    EXPECT_EQ(picture->color.at(0, 1)[0], at.x == -1 ? 1 : 0);
+    EXPECT_EQ(picture->color.at(9, 4)[0], 0);
+    EXPECT_TRUE(messages.warnings.empty());
+    EXPECT_EQ(read_header(folder / "a.exr", options)->data_window, picture->data_window);
+  }
+}
+
 TEST(ReadExr, OrientationTurnsPixelsAndWindows) {
   const TemporaryFolder folder;
   const std::vector<float> rgb{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6};  // 3 × 2

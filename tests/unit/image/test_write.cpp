@@ -9,7 +9,10 @@
 
 namespace afterglow {
 namespace {
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
 
 TEST(Write, EightBitCodesComeBackExactly) {
   const TemporaryFolder folder;
@@ -42,6 +45,44 @@ TEST(Write, AlphaZeroKeepsItsColour) {
   picture.color.pixels = {0.25f, 1, 0, 0};
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
   EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8), (std::vector<unsigned char>{137, 255, 0, 0}));
+}
+
+/// As filters of renderers with sharp edges make it.
+TEST(Write, AlphaAboveOneIsOneAndTakesNoLight) {
+  const TemporaryFolder folder;
+  Picture picture = make_picture(1, 1, true);
+  picture.color.pixels = {0.25f, 1, 0, 2};
+  for (const char* name : {"o.png", "o.tif"}) {
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name));
+    EXPECT_EQ(samples_of<unsigned char>(folder / name, OIIO::TypeUInt8),
+              (std::vector<unsigned char>{137, 255, 0, 255}));
+  }
+}
+
+TEST(Write, GlowsWithoutCoverageAreTold) {
+  const TemporaryFolder folder;
+  Picture picture = make_picture(16, 16, true);
+  for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) picture.color.pixels[i] = i % 4 == 3 ? 0.0f : 0.25f;
+  const auto warnings = [&](const std::string& name, SampleType type) {
+    Messages messages;
+    WriteOptions options;
+    options.type = type;
+    EXPECT_TRUE(write_picture(picture, folder / name, options, messages.diagnostics));
+    return messages.warnings;
+  };
+  for (const char* name : {"o.png", "o.tif", "o.webp"})
+    EXPECT_THAT(warnings(name, SampleType::uint8), ElementsAre(HasSubstr("glows where alpha is 0 is not seen")))
+        << name;
+  EXPECT_THAT(warnings("o.exr", SampleType::half), IsEmpty());
+  EXPECT_THAT(warnings("o.tif", SampleType::half), IsEmpty());
+  picture.unorm8.resize(picture.color.pixels.size());
+  for (std::size_t i = 0; i < picture.unorm8.size(); ++i) picture.unorm8[i] = i % 4 == 3 ? 0 : 137;
+  EXPECT_THAT(warnings("o.png", SampleType::uint8), SizeIs(1));
+  for (std::size_t i = 0; i < picture.unorm8.size(); ++i) picture.unorm8[i] = i % 4 == 3 ? 0 : 2;
+  EXPECT_THAT(warnings("o.png", SampleType::uint8), IsEmpty()) << "too faint to be seen";
+  picture.unorm8.clear();
+  for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4) picture.color.pixels[i] = 0.01f;
+  EXPECT_THAT(warnings("o.png", SampleType::uint8), IsEmpty()) << "straight alpha has it";
 }
 
 TEST(Write, JpegGoesOnBlackAndSaysSoWhenItMatters) {

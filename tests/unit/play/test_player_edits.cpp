@@ -192,5 +192,88 @@ TEST_F(PlayerTest, FootageOpenedInTurnsIsTheLastOne) {
   }
 }
 
+/// An edit may ask for an input that no look has asked for: pictures are read anew with it before anybody judges.
+class PlayerInputs : public PlayerTest {
+ protected:
+  void write_fog(const std::string& name, const std::string& more) {
+    write(name,
+          "local fx = require \"afterglow\"\nreturn fx.stack { fx.depth_fog { density = 100, start = 0, color = { 8, "
+          "8, 8 }" +
+              more + " } }\n");
+  }
+  Player& open_with_depth() {
+    write_sequence(2);
+    fs::copy_file(path("s.2.exr"), path("depth.exr"));
+    PlayerOptions options;
+    options.footage.read.depth.file = path("depth.exr");
+    return open(options);
+  }
+  void expect_fog() {
+    EXPECT_EQ(player_->live().status().error_text(), "");
+    EXPECT_THAT(warnings_, ::testing::IsEmpty());
+    EXPECT_GT(result(), source() + 0.5f);
+  }
+};
+
+TEST_F(PlayerInputs, AnEditMayAskForMore) {
+  for (const std::string more : {"", ", required = true"}) {
+    Player& player = open_with_depth();
+    turn();
+    EXPECT_FLOAT_EQ(result(), 2.0f / 8);
+    write_fog("look.lua", more);
+    reload();
+    turn();
+    expect_fog();
+    EXPECT_EQ(player.shown().number, 1);
+    EXPECT_FALSE(player.shown().failed);
+    write_look("look.lua", 1);
+    reload();
+    EXPECT_FLOAT_EQ(result(), 2.0f / 8);
+    player_.reset();
+    fs::remove(path("depth.exr"));
+  }
+}
+
+TEST_F(PlayerInputs, ListsOfLooksMayReadThemAside) {
+  Player& player = open_with_depth();
+  turn();
+  const auto read = player.reader_with_inputs();
+  ASSERT_TRUE(read);
+  player_.reset();
+  const auto picture = read();
+  ASSERT_TRUE(picture) << picture.error().text();
+  EXPECT_EQ(picture->auxiliary.count("depth"), 1u);
+  EXPECT_EQ(picture->asked.size(), 3u);
+}
+
+TEST_F(PlayerInputs, AnotherPresetMayAskForMore) {
+  Player& player = open_with_depth();
+  turn();
+  write_fog("fog.lua", ", required = true");
+  ASSERT_TRUE(player.open_preset(path("fog.lua")).ok());
+  for (int i = 0; i < 3; ++i) {
+    turn();
+    EXPECT_FALSE(player.shown().failed);
+  }
+  expect_fog();
+}
+
+TEST_F(PlayerInputs, WhatPicturesDoNotHaveIsSaidOnceTheyWereRead) {
+  write_sequence(2);
+  open();
+  turn();
+  write_fog("look.lua", ", required = true");
+  reload();
+  for (int i = 0; i < 3; ++i) turn();
+  EXPECT_THAT(player_->live().status().error_text(), HasSubstr("'depth_fog' is required, but there is no depth input"));
+  EXPECT_FLOAT_EQ(result(), 2.0f / 8) << "the last good one plays on";
+  write_fog("look.lua", "");
+  reload();
+  for (int i = 0; i < 3; ++i) turn();
+  EXPECT_EQ(player_->live().status().error_text(), "");
+  EXPECT_THAT(warnings_, ::testing::Contains(HasSubstr("no depth input")));
+  EXPECT_FLOAT_EQ(result(), 1.0f / 8);
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -82,6 +82,30 @@ TEST_F(PlayerFinite, APassIsNamedOnceUntilAllIsWellAgain) {
   EXPECT_THAT(warnings_, SizeIs(2)) << "it was well in between";
 }
 
+/// Nothing else has changed when it comes: whoever draws is told to.
+TEST_F(PlayerFinite, AnAnswerIsToldByTheTurnThatTakesIt) {
+  write_root(1);
+  PlayerOptions options;
+  options.finite_watch = {.device = {.device = "auto"}};
+  Player& player = open(options);
+  turn();
+  const auto told = [&] {
+    for (int i = 0; i < 400; ++i) {
+      const Step step = player.step().value();
+      if (step.told) return !step.changed;
+      player.wait(seconds_ + 1);
+    }
+    return false;
+  };
+  EXPECT_TRUE(told());
+  EXPECT_TRUE(player.shown().not_finite);
+  EXPECT_FALSE(player.step()->told);
+  write_root(0);
+  reload();
+  EXPECT_TRUE(told());
+  EXPECT_FALSE(player.shown().not_finite);
+}
+
 TEST_F(PlayerFinite, EditsOfThePanelCount) {
   Player& player = open_watched();
   turn();

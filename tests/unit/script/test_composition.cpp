@@ -60,11 +60,11 @@ TEST_F(Composition, AGroupStandsTogetherWhereItsFirstEffectWould) {
 }
 
 TEST_F(Composition, WhatALookInAGroupSaysOfPicturesIsWarnedAbout) {
-  EXPECT_THAT(
-      order("fx.group { fx.stack { reference_height = 540, input_space = \"logc3\", gamut = \"keep\", fx.a {} } }"),
-      ElementsAre("group", ">a"));
+  EXPECT_THAT(order("fx.group { fx.stack { reference_height = 540, input_space = \"logc3\", gamut = \"keep\", alpha = "
+                    "\"associated\", fx.a {} } }"),
+              ElementsAre("group", ">a"));
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("fx.group: the 'input_space' of the look in it does not count"),
-                                          HasSubstr("'gamut'"), HasSubstr("'reference_height'")));
+                                          HasSubstr("'gamut'"), HasSubstr("'alpha'"), HasSubstr("'reference_height'")));
   scene.warnings.clear();
   EXPECT_THAT(order("fx.group { fx.stack { name = \"x\", fx.a {} } }"), ElementsAre("group", ">a"));
   EXPECT_TRUE(scene.warnings.empty());

@@ -34,7 +34,7 @@ std::string build(const std::string& statements, const std::string& settings = "
 }
 
 const std::string kBudget = "error: instruction budget spent: more than 2000000 instructions or 60 s";
-const std::string kMemory = "preset.lua: error: memory limit reached: more than 16 MiB";
+const std::string kMemory = "preset.lua:2: error: memory limit reached: more than 16 MiB";
 
 // ---- loops of Lua's own that no hook interrupts
 

@@ -124,11 +124,12 @@ TEST_F(Extend, Messages) {
             "preset.lua:2: error: fx.extend: 3 is not the name of a preset; allowed: fx.extend(\"NAME\", { ENTRY = { "
             "SETTING = "
             "VALUE } })");
-  EXPECT_EQ(error("\"base\", {\n glwo = {} }"),
-            "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, gamut, input_space, "
-            "max_error, name, "
-            "position, reference_height, requires; "
-            "did you mean 'glow'?");
+  EXPECT_EQ(
+      error("\"base\", {\n glwo = {} }"),
+      "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, alpha, gamut, input_space, "
+      "max_error, name, "
+      "position, reference_height, requires; "
+      "did you mean 'glow'?");
   EXPECT_EQ(error("\"base\", {\n glow = {\n gian = 1 } }"),
             "preset.lua:4: error: effect 'glow' has no setting 'gian'; allowed: gain, levels; did you mean 'gain'?");
   EXPECT_EQ(error("\"base\", {\n rim = {\n gain = 5 } }"),

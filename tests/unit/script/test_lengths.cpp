@@ -65,6 +65,9 @@ TEST_F(Lengths, Messages) {
   };
   EXPECT_EQ(error("reference_height = 0"),
             "preset.lua:3: error: fx.stack: reference_height = 0 is out of range; allowed: 1…16384");
+  EXPECT_EQ(error("alpha = \"asociated\""),
+            "preset.lua:3: error: fx.stack: alpha = \"asociated\"; allowed: straight, associated; did you mean "
+            "'associated'?");
   EXPECT_EQ(error("gamut = \"kepe\""),
             "preset.lua:3: error: fx.stack: gamut = \"kepe\"; allowed: cut, keep; did you mean 'keep'?");
   EXPECT_EQ(

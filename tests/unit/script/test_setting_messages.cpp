@@ -151,9 +151,10 @@ TEST_F(SettingMessages, LinesInModulesAndWithoutATableAreFound) {
 }
 
 TEST_F(SettingMessages, Stacks) {
-  EXPECT_EQ(error("nmae = \"x\""),
-            "preset.lua:3: error: fx.stack has no 'nmae'; allowed: gamut, input_space, max_error, name, position, "
-            "reference_height, requires; did you mean 'name'?");
+  EXPECT_EQ(
+      error("nmae = \"x\""),
+      "preset.lua:3: error: fx.stack has no 'nmae'; allowed: alpha, gamut, input_space, max_error, name, position, "
+      "reference_height, requires; did you mean 'name'?");
   EXPECT_EQ(error("fx.glow {},\n5"),
             "preset.lua:4: error: fx.stack: position 2 is 5, not an effect or a volume; allowed: fx.NAME { … }, "
             "fx.group { … }, fx.mix { … }, fx.volume { … }, a list of them");
@@ -205,6 +206,25 @@ TEST_F(SettingMessages, SyntaxAndRunTimeErrors) {
   EXPECT_EQ(scene.load_error(), "preset.lua:3: error: told you");
   scene.preset("local s = string.rep()");
   EXPECT_EQ(scene.load_error(), "preset.lua:1: error: bad argument #1 to 'rep' (string expected, got no value)");
+  scene.preset("\nlocal s = (\"%d\"):format(1.5)");
+  EXPECT_EQ(scene.load_error(),
+            "preset.lua:2: error: bad argument #2 to 'string.format' (number has no integer representation)");
+  scene.preset("\nlocal s = (\"x\"):rep(1e9)");
+  EXPECT_EQ(scene.load_error(), "preset.lua:2: error: memory limit reached: more than 64 MiB");
+}
+
+TEST_F(SettingMessages, SignsThatWordProcessorsMake) {
+  scene.preset("local fx = require “afterglow”\n");
+  EXPECT_EQ(scene.load_error(),
+            "preset.lua:1: error: unexpected symbol near '“'; allowed: plain quotes: \"text\" or 'text'");
+  scene.preset("-- “\nlocal a = \"“\" .. 3 – 4\n");
+  EXPECT_EQ(scene.load_error(), "preset.lua:2: error: unexpected symbol near '–'; allowed: a plain minus: -");
+  scene.preset("local grün = 1\n");
+  EXPECT_EQ(scene.load_error(),
+            "preset.lua:1: error: unexpected symbol near 'ü'; allowed: letters, digits and signs of ASCII, outside of "
+            "texts and comments");
+  scene.preset("local a = \xFF\n");
+  EXPECT_NE(scene.load_error().find("preset.lua:1: error: "), std::string::npos);
 }
 
 TEST_F(SettingMessages, MissingPreset) {

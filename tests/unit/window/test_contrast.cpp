@@ -91,7 +91,7 @@ class Contrast : public ::testing::Test {
     draw_frame_mark(*player_, ui(), {.place = {}, .picture = {}, .window = {}}, area);
     draw_message_overlay(ui(), area);
     window_.dialogs(*player_, ui());
-    if (asks_) (void)draw_quit_dialog(ui(), "closing", "2 settings of look.lua would be lost.", {w, h});
+    if (asks_) (void)draw_quit_dialog(ui(), {"closing", "2 settings of look.lua", "frame 3 of 12 to out.mp4"}, {w, h});
     window_.help(*player_, ui(), {0, 0}, {w, h});
     return interface_.end();
   }
@@ -248,11 +248,11 @@ TEST_F(Contrast, OfEveryPairOfTheTheme) {
 
 /// No preset holds them: a save does not keep them.
 TEST_F(Contrast, ClosingAsksAboutArguments) {
-  EXPECT_EQ(window_.unsaved(*player_, true), "");
+  EXPECT_EQ(window_.unsaved(*player_), "");
   player_->set("", "hero", {SettingType::text, {}, "lamp"});
-  EXPECT_EQ(window_.unsaved(*player_, true), "1 argument, which no preset holds: they are given by --arg hero=lamp");
+  EXPECT_EQ(window_.unsaved(*player_), "1 argument, which no preset holds: they are given by --arg hero=lamp");
   player_->set("bloom", "intensity", {SettingType::number, {0.5}, ""});
-  EXPECT_EQ(window_.unsaved(*player_, false),
+  EXPECT_EQ(window_.unsaved(*player_),
             "1 setting of look.lua and 1 argument, which no preset holds: they are given by --arg hero=lamp");
 }
 

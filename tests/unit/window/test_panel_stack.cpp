@@ -58,10 +58,64 @@ TEST_F(PanelTest, TheStackIsEditedAndSaved) {
   }
   EXPECT_TRUE(port->changes.none());
   port->reload();
-  panel->undo_save(*port);
+  panel->undo_save(interface.ui(), *port);
+  EXPECT_EQ(interface.ui().message, "look.lua is as it was before");
   frame();
   EXPECT_EQ(*read_file(file), kPreset);
   EXPECT_EQ(panel->unsaved(*port), "the stack of look.lua") << "what was saved is still on screen";
+}
+
+/// Behind it, or before it where it was the last.
+TEST_F(PanelTest, WhereAnEntryIsRemovedTheNextIsChosen) {
+  Ui& ui = interface.ui();
+  const auto names = [&] {
+    std::vector<std::string> out;
+    for (const StackEntry& entry : *port->build()->entries) out.push_back(entry.name);
+    return out;
+  };
+  const auto act = [&](Panel::EntryAction action) {
+    panel->act(ui, *port, action);
+    frame();
+    panel->stack().wait();
+    frame();
+    port->reload();
+    frame();
+  };
+  panel->choose_next(ui, *port, 1);
+  const std::string first = panel->chosen();
+  act(Panel::EntryAction::duplicate);
+  ASSERT_EQ(panel->chosen(), first + "#2");
+  panel->choose_next(ui, *port, -1);
+  act(Panel::EntryAction::remove);
+  EXPECT_EQ(panel->chosen(), first) << "the second is called so now";
+  while (names().size() > 1) {
+    const auto before = names();
+    const auto at = std::ranges::find(before, panel->chosen()) - before.begin();
+    act(Panel::EntryAction::remove);
+    const auto after = names();
+    EXPECT_EQ(panel->chosen(), after[std::min<std::size_t>(static_cast<std::size_t>(at), after.size() - 1)]);
+  }
+}
+
+TEST_F(PanelTest, WhatIsDoneToAnEntryThatIsNotBuiltYetWaits) {
+  Ui& ui = interface.ui();
+  panel->choose_next(ui, *port, 1);
+  panel->act(ui, *port, Panel::EntryAction::duplicate);
+  frame();
+  panel->stack().wait();
+  frame();
+  const std::string made = panel->chosen();
+  EXPECT_THAT(made, ::testing::EndsWith("#2"));
+  ui.message.clear();
+  panel->act(ui, *port, Panel::EntryAction::toggle);
+  frame();
+  EXPECT_FALSE(port->changes.value(made, "enabled"));
+  EXPECT_EQ(ui.message, "");
+  port->reload();
+  frame();
+  ASSERT_TRUE(port->changes.value(made, "enabled"));
+  EXPECT_EQ(port->changes.value(made, "enabled")->number[0], 0);
+  EXPECT_EQ(ui.message, made + " is off");
 }
 
 TEST_F(PanelTest, StackAndFileDisagree) {
@@ -102,7 +156,7 @@ TEST_F(PanelTest, StackAndFileDisagree) {
 /// Undo brings back a stack that was made before another program changed the file: it is in conflict again.
 TEST_F(PanelTest, AStackOfTheHistoryGoesByTheFileThatItWasMadeFrom) {
   const auto remove_next = [&] {
-    panel->choose_next(interface.ui(), *port, 1);
+    panel->choose_next(interface.ui(), *port, panel->chosen().empty() ? 1 : -1);
     panel->act(interface.ui(), *port, Panel::EntryAction::remove);
     frame();
     panel->stack().wait();

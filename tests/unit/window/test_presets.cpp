@@ -76,7 +76,7 @@ ThumbnailFrame gray_frame(float level = 0.5f) {
   picture->color = Image(640, 400, 4);
   for (std::size_t i = 0; i < picture->color.pixels.size(); ++i) picture->color.pixels[i] = i % 4 == 3 ? 1 : level;
   picture->data_window = picture->display_window = {0, 0, 640, 400};
-  return {picture, {}};
+  return {picture, {}, {}};
 }
 
 class ThumbnailsOfPresets : public PresetFolder {
@@ -140,6 +140,36 @@ TEST_F(ThumbnailsOfPresets, OfAnEffectMore) {
   EXPECT_EQ(middle(*with) & 0xff, 0u);
   EXPECT_EQ(with->note, "");
   EXPECT_TRUE(nothing->error || !nothing->note.empty()) << "there is no depth";
+}
+
+/// The look that is played asked for no depth; those of the list see it all the same.
+TEST_F(ThumbnailsOfPresets, FramesHaveWhatOnlyTheListedLooksAskFor) {
+  const auto fog = std::make_shared<const ChangedLook>(
+      ChangedLook{"local fx = require \"afterglow\"\nreturn fx.stack { fx.depth_fog { density = 9, ambient = 0, "
+                  "max_opacity = 1, color = { 0, 1, 0 "
+                  "}, required = true } }\n",
+                  {},
+                  {}});
+  ThumbnailFrame frame = gray_frame();
+  frame.read = [plain = frame.picture]() -> Result<Picture> {
+    Picture with = *plain;
+    Image& depth = with.auxiliary["depth"] = Image(640, 400, 1);
+    std::ranges::fill(depth.pixels, 100.0f);
+    return with;
+  };
+  const ThumbnailOf wanted{file("red"), fog, ""};
+  Thumbnails thumbnails({.device = "auto", .validate = true}, {}, [] {});
+  thumbnails.set_frame(frame);
+  thumbnails.want({wanted});
+  const auto made = wait_for(thumbnails, wanted);
+  ASSERT_TRUE(made);
+  ASSERT_FALSE(made->error) << made->error->text();
+  EXPECT_EQ(middle(*made), 0xff00ff00u) << "all fog";
+  frame.read = []() -> Result<Picture> { return Error{ErrorKind::io, "has gone"}; };
+  thumbnails.set_frame(frame);
+  const auto without = wait_for(thumbnails, wanted);
+  ASSERT_TRUE(without);
+  EXPECT_TRUE(without->error) << "the picture as it was read";
 }
 
 TEST_F(ThumbnailsOfPresets, AnotherFrameAndAnotherWishThrowThemAway) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// What Lua's parser says of characters that it does not know, said for people.
+#pragma once
+
+#include <string_view>
+
+#include "core/result.h"
+
+namespace afterglow::script {
+
+/// Names the character in place of its first byte ("unexpected symbol near '<\226>'"), and what to write for it: quotes
+/// and dashes that word processors and web pages make. `text`: of the script; the error knows its line.
+void name_symbol(Error& error, std::string_view text);
+
+}  // namespace afterglow::script
