@@ -40,6 +40,12 @@ Result<void> check_pixels(const std::filesystem::path& file, std::uint64_t size,
   return {};
 }
 
+/// OpenImageIO makes room for as many bytes of the user's data as the header claims.
+Result<void> check_user_data(const std::filesystem::path& file, std::uint64_t size, std::uint32_t bytes) {
+  if (bytes != kUndefined && bytes > size) return malformed(file, "is truncated");
+  return {};
+}
+
 /// How many samples a pixel of this descriptor has. Nothing: the reader does not know it.
 std::optional<std::uint32_t> dpx_channels(std::uint32_t descriptor) {
   switch (descriptor) {
@@ -65,9 +71,7 @@ Result<std::uint32_t> check_dpx(const std::filesystem::path& file, std::ifstream
   constexpr std::size_t kElement = 780;
   const FilmHeader header(in, kElement + 72, 'S');
   if (!header.whole()) return malformed(file, "is truncated");
-  // OpenImageIO makes room for as many bytes of the user's data as the header claims.
-  const std::uint32_t user_bytes = header.number(32, 4);
-  if (user_bytes != kUndefined && user_bytes > size) return malformed(file, "is truncated");
+  AFTERGLOW_CHECK(check_user_data(file, size, header.number(32, 4)));
   const std::uint32_t width = header.number(772, 4), lines = header.number(776, 4);
   const std::uint32_t bits = header.number(kElement + 23, 1), packing = header.number(kElement + 24, 2);
   const auto channels = dpx_channels(header.number(kElement + 20, 1));
@@ -101,6 +105,7 @@ Result<void> check_cineon(const std::filesystem::path& file, std::ifstream& in, 
   constexpr std::size_t kElements = 196, kElement = 28;
   const FilmHeader header(in, 692, 0x80);
   if (!header.whole()) return malformed(file, "is truncated");
+  AFTERGLOW_CHECK(check_user_data(file, size, header.number(16, 4)));
   const std::uint32_t elements = header.number(193, 1);
   if (elements < 1 || elements > 8) return malformed(file, kMalformed);
   const std::uint32_t bits = header.number(kElements + 2, 1);

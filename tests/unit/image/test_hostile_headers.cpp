@@ -146,6 +146,13 @@ TEST_F(HostileHeaders, DpxUserDataThatTheFileDoesNotHold) {
   EXPECT_EQ(refused("SDPX").message, "is truncated");
 }
 
+TEST_F(HostileHeaders, CineonUserDataThatTheFileDoesNotHold) {
+  // 1.7 GB of it, by the fuzzer too.
+  const std::string rest(2012, '\0');
+  EXPECT_EQ(refused("\x80\x2a\x5f\xd7" + std::string(12, '\0') + std::string("\x67\x65\x48\x69", 4) + rest).message,
+            "is truncated");
+}
+
 TEST_F(HostileHeaders, SgiRowsThatTheFileDoesNotHold) {
   make_file(folder_ / "whole.sgi", 9, 7, {"R", "G", "B"}, OIIO::TypeUInt8);
   std::string bytes = file_bytes(folder_ / "whole.sgi");
