@@ -116,10 +116,11 @@ local fx = {}
 ---`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "logc4", "slog3", "cineon", "pq", "hlg",
 ---"rec709", "gamma22", "gamma24", "linear", "srgb"; `--input-space` goes before it.
 ---`gamut` says what becomes of components below 0, which colours outside of Rec.709 have: "cut" (they end at 0) or "keep"; `--gamut` goes before it.
+---`alpha` says how effects that bend colour see soft edges: "straight", without their coverage, or "associated", as they are, for layers that glow.
 ---`requires = "0.2"` names the oldest Afterglow that runs the preset; older ones refuse it by that line.
 ---`position` says where the picture is seen from, for volumes; `--at` goes before it.
 ---Errors: other keys, positions that hold neither an effect nor a volume, two entries of one name.
----@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, reference_height?: integer, input_space?: string, gamut?: "cut"|"keep", requires?: string, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
+---@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, reference_height?: integer, input_space?: string, gamut?: "cut"|"keep", alpha?: "straight"|"associated", requires?: string, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
 fx.stack = core.stack
 
 ---The stack of another preset, found by name (beside this one, in `--path`, `AFTERGLOW_PATH`, the installation), with some of it

@@ -173,6 +173,7 @@ Result<void> check_stack(const Preset& before, const Preset& after) {
   if (before.max_error() != after.max_error()) return differs("max_error", "as it is", "another");
   if (before.input_space() != after.input_space()) return differs("input_space", "as it is", "another");
   if (before.keeps_negative() != after.keeps_negative()) return differs("gamut", "as it is", "another");
+  if (before.sees_associated() != after.sees_associated()) return differs("alpha", "as it is", "another");
   if (before.explanation().position != after.explanation().position) return differs("position", "as it is", "another");
   if (volumes(before) != volumes(after)) return differs("the volumes", volumes(before), volumes(after));
   return {};

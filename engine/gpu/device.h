@@ -2,7 +2,6 @@
 // A Vulkan device: picked by name, or adopted from the caller. Owns nothing global.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -47,9 +47,10 @@ bool glows_outside(const Picture& picture) {
   const auto glow = [](const auto* pixel, auto least) {
     return pixel[3] == 0 && std::max({pixel[0], pixel[1], pixel[2]}) >= least;
   };
+  const std::size_t few = width * height / 10000;
   std::size_t pixels = 0;
   std::vector<float> memory;
-  for (std::size_t y = 0; y < height; ++y) {
+  for (std::size_t y = 0; y < height && pixels <= few; ++y) {
     if (!picture.unorm8.empty()) {
       for (std::size_t x = 0; x < width; ++x) pixels += glow(&picture.unorm8[4 * (width * y + x)], kCode);
       continue;
@@ -57,7 +58,7 @@ bool glows_outside(const Picture& picture) {
     const float* row = color_row(picture, static_cast<int>(y), memory);
     for (std::size_t x = 0; x < width; ++x) pixels += glow(&row[4 * x], kLight);
   }
-  return pixels > width * height / 10000;
+  return pixels > few;
 }
 
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,

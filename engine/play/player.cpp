@@ -2,6 +2,7 @@
 #include "play/player.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -436,7 +437,9 @@ std::function<Result<Picture>()> Player::reader_with_inputs() const {
   FootageNeeds needs = s.needs;
   for (const char* name : {"depth", "normal", "motion"})
     if (std::ranges::find(needs.auxiliary, name) == needs.auxiliary.end()) needs.auxiliary.emplace_back(name);
-  if (needs == s.needs || s.footage->movie(key)) return {};
+  const ReadOptions& read = s.options.footage.read;
+  const bool beside = read.depth.given() || read.normal.given() || read.motion.given();
+  if (needs == s.needs || (s.footage->movie(key) && !beside)) return {};
   return [footage = s.footage, key, needs]() -> Result<Picture> {
     Diagnostics silent;  // it was read before
     return footage->read(key, needs, silent);

@@ -17,6 +17,7 @@ Filter of_taps(std::vector<Tap2d> taps) { return {.interpolation = Interpolation
 /// The mean along `length` columns of what is interpolated between columns that are `step` apart.
 Filter mean_of_line(double length, glm::dvec2 step) {
   const double end = length / 2;
+  if (end < 1e-6) return of_taps({{0, 0, 1}});
   const int last = static_cast<int>(std::ceil(end));
   std::vector<Tap2d> taps;
   for (int i = -last; i <= last; ++i) {

@@ -171,6 +171,7 @@ std::optional<bool> Preset::keeps_negative() const {
 }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 const std::vector<PresetArgument>& Preset::arguments() const { return state_->runtime->arguments; }
+bool Preset::sees_associated() const { return state_->alpha == "associated"; }
 bool Preset::may_change() const { return state_->may_change; }
 bool Preset::may_look_back() const {
   return std::ranges::any_of(state_->runtime->box->sources(), [](const Source& source) {

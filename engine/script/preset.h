@@ -161,6 +161,8 @@ class Preset {
 
   const std::string& name() const;         ///< of the stack
   const std::string& input_space() const;  ///< `input_space` of the stack; empty: none
+  /// `alpha` of the stack: effects see colours as they are, not straight.
+  bool sees_associated() const;
   /// `gamut` of the stack: whether components below 0 stay, which colours outside of Rec.709 have; none: not said.
   std::optional<bool> keeps_negative() const;
   std::optional<double> max_error() const;  ///< `max_error` of the stack

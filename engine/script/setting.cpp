@@ -22,6 +22,17 @@ std::string list_text(const SettingValue& value, int count) {
 
 }  // namespace
 
+namespace {
+
+/// So that `parse_value` finds the same text: within quotation marks that it has not, else as it is.
+std::string quoted(const std::string& text) {
+  for (const char mark : {'"', '\''})
+    if (text.find(mark) == std::string::npos) return mark + text + mark;
+  return text;
+}
+
+}  // namespace
+
 std::string SettingValue::text() const {
   switch (type) {
     case SettingType::integer:
@@ -33,7 +44,7 @@ std::string SettingValue::text() const {
     case SettingType::enumeration:
     case SettingType::file:
     case SettingType::text:
-      return '"' + choice + '"';
+      return quoted(choice);
     case SettingType::color:
       if (const auto code = script::shorter_color(*this)) return '"' + *code + '"';
       return list_text(*this, 3);
@@ -50,12 +61,15 @@ namespace {
 
 constexpr double kMaxInteger = 2147483647;
 
-/// The value within the bounds. What goes beyond one by less than a 32-bit float tells, as sums of animated values do
-/// (0.05 + 0.9 is more than 0.95), is the bound; none: out of range.
+/// The value within the bounds. What goes beyond one by no more than a 32-bit float's rounding (of the bound, or of 1)
+/// is the bound, as of sums of animated values: 0.05 + 0.9 is more than 0.95, 0.3 − 0.1·3 less than 0. None: out of
+/// range. Colours have a bound of their own, 0.
 std::optional<double> within(const SettingSchema& schema, double value) {
-  const auto same = [&](double bound) { return static_cast<float>(value) == static_cast<float>(bound); };
-  if (schema.min && value < *schema.min) return same(*schema.min) ? schema.min : std::nullopt;
-  if (schema.max && value > *schema.max) return same(*schema.max) ? schema.max : std::nullopt;
+  const auto slack = [](double bound) { return 6e-8 * std::max(std::abs(bound), 1.0); };
+  std::optional<double> min = schema.min;
+  if (schema.type == SettingType::color) min = std::max(min.value_or(0), 0.0);
+  if (min && value < *min) return *min - value <= slack(*min) ? min : std::nullopt;
+  if (schema.max && value > *schema.max) return value - *schema.max <= slack(*schema.max) ? schema.max : std::nullopt;
   return value;
 }
 
@@ -191,7 +205,7 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
         const double c = given.list[static_cast<std::size_t>(i)];
         if (!std::isfinite(c)) return fail("not finite");
         const auto held = within(schema, c);
-        if (!held || (color && c < 0)) return fail("out of range");
+        if (!held) return fail("out of range");
         if (!fits_float(*held)) return fail(kTooLarge);
         value.number[static_cast<std::size_t>(i)] = *held + 0.0;
       }

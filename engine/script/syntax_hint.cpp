@@ -42,7 +42,14 @@ std::string_view line_of(std::string_view text, int line) {
   return text.substr(0, text.find('\n'));
 }
 
-/// The first character of a line, outside of its texts, that begins with this byte.
+std::string_view character_of(std::string_view line, std::size_t at) {
+  std::size_t end = at + 1;
+  while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) ++end;
+  return line.substr(at, end - at);
+}
+
+/// The first character of a line, outside of its texts, that begins with this byte; else within them: long texts and
+/// comments may begin on lines above.
 std::string_view character_at(std::string_view line, char first) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -52,12 +59,11 @@ std::string_view character_at(std::string_view line, char first) {
     } else if (line[i] == '"' || line[i] == '\'') {
       quote = line[i];
     } else if (line[i] == first) {
-      std::size_t end = i + 1;
-      while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) ++end;
-      return line.substr(i, end - i);
+      return character_of(line, i);
     }
   }
-  return {};
+  const std::size_t within = line.find(first);
+  return within == std::string_view::npos ? std::string_view() : character_of(line, within);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "session/live_builder.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/exception.h"
 #include "core/file.h"
@@ -187,7 +188,7 @@ BuiltStack LiveBuilder::new_stack() {
 
 /// Everything that reads files.
 Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, const std::shared_ptr<FileRecord>& record,
-                                     std::optional<Basis>& work) {
+                                     std::optional<Basis>& work, std::vector<std::string>& wants) {
   BuiltStack built = new_stack();
   StackOptions options = options_.stack;
   options.preset.overrides = request.overrides;
@@ -207,7 +208,8 @@ Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, const std::shar
   AFTERGLOW_TRY(built.stack, Stack::load(preset_, options, *built.diagnostics));
   built.stack->show(request.shown);
   built.stack->use(device_, options_.own_images);
-  if (request.context && not_asked(*built.stack, request).empty()) {
+  wants = not_asked(*built.stack, request);
+  if (request.context && wants.empty()) {
     Basis made{.build = {}, .work = {}, .choice = built.stack->choice()};
     AFTERGLOW_TRY(made.build, built.stack->evaluate(*request.context));
     AFTERGLOW_TRY(made.work, built.stack->work({.build = made.build, .encoding = request.encoding}));
@@ -233,6 +235,8 @@ void LiveBuilder::await_inputs(std::vector<std::string> wants) {
     const std::lock_guard lock(mutex_);
     wants_ = std::move(wants);
     gave_up_.reset();
+    status_.error.reset();
+    status_.source_line.clear();
   }
   notify();
 }
@@ -246,7 +250,8 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
   const auto start = Clock::now();
   std::optional<Basis> work;
   const auto record = std::make_shared<FileRecord>();
-  Result<BuiltStack> built = load(request, record, work);
+  std::vector<std::string> wants;
+  Result<BuiltStack> built = load(request, record, work, wants);
   {
     const std::lock_guard lock(mutex_);
     until_->store(kNever);  // from now on the script is the stack's, and nobody interrupts it
@@ -255,7 +260,7 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
   if (files_.follow(*record->looks())) want_look();
   times.script = milliseconds_since(start);
   if (!built) return std::move(built).error();
-  if (auto wants = not_asked(*built->stack, request); !wants.empty()) {
+  if (!wants.empty()) {
     await_inputs(std::move(wants));
     return {};
   }
@@ -366,6 +371,7 @@ void LiveBuilder::fail(Error error) {
     const std::lock_guard lock(mutex_);
     ++counters_.failed;
     gave_up_.reset();
+    wants_.clear();
     status_.error = std::move(error);
     status_.source_line = std::move(line);
   }

@@ -101,7 +101,7 @@ class LiveBuilder {
   void work(const Wanted& why, const LiveRequest& request);
   Result<void> build(const LiveRequest& request, BuildTimes& times);
   Result<BuiltStack> load(const LiveRequest& request, const std::shared_ptr<FileRecord>& record,
-                          std::optional<Basis>& work);
+                          std::optional<Basis>& work, std::vector<std::string>& wants);
   BuiltStack new_stack();
   std::vector<std::string> not_asked(Stack& stack, const LiveRequest& request) const;
   void await_inputs(std::vector<std::string> wants);

@@ -66,7 +66,9 @@ void Panel::turn(Ui& ui, PanelPort& port) {
   if (const auto copy = save_.take_copy()) ui.open(copy->string());
   if (stack_.poll(port, !save_.busy())) {
     ui.say(stack_.message());
-    if (!stack_.failed()) chosen_ = stack_.called_now(chosen_);
+    chosen_ = !stack_.failed() ? stack_.called_now(chosen_) : removed_.empty() ? chosen_ : removed_;
+    removed_.clear();
+    if (act_due_) act_due_->entry = stack_.called_now(act_due_->entry);
   }
   const bool told = std::exchange(conflict_told_, stack_.conflict());
   if (stack_.conflict() && !told) ui.say(conflict_text());

@@ -91,8 +91,9 @@ class Panel {
   bool save_waits_ = false;                        ///< for changes of the stack
   std::optional<std::filesystem::path> copy_due_;  ///< where "Save as" is to write when no save runs
   bool conflict_told_ = false;
-  StackText text_;      ///< that the bases are of
-  std::string chosen_;  ///< the entry that keys are about
+  StackText text_;       ///< that the bases are of
+  std::string chosen_;   ///< the entry that keys are about
+  std::string removed_;  ///< the one before, until it is gone
   struct ActDue {
     EntryAction action;
     std::string entry;

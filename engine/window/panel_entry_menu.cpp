@@ -44,7 +44,7 @@ void Panel::act(Ui& ui, PanelPort& port, EntryAction action) {
   switch (action) {
     case EntryAction::remove:
       stack_.begin({Kind::remove, chosen_});
-      chosen_ = neighbour_of(port, chosen_);
+      removed_ = std::exchange(chosen_, neighbour_of(port, chosen_));
       return;
     case EntryAction::duplicate:
       return stack_.begin({Kind::duplicate, chosen_});

@@ -208,7 +208,7 @@ void PlayParts::add_to(WindowOptions& options) {
   options.strip_height = [this](const Ui& ui, float width) { return range_export_.height(ui, width); };
   options.exporting = [this] {
     using Saving = WindowOptions::Saving;
-    return range_export_.busy() ? Saving::busy : range_export_.failed() ? Saving::failed : Saving::done;
+    return range_export_.busy() ? Saving::busy : range_export_.whole() ? Saving::done : Saving::failed;
   };
   options.export_state = [this] { return range_export_.state(); };
   options.export_range = [this](Player&, Ui& ui) { ask_for_range(ui); };

@@ -73,6 +73,7 @@ void RangeExport::poll(Player& player, Ui& ui) {
   if (!outcome && !ended) {
     const bool known = first_error_.empty() || told.find(first_error_) != std::string::npos;
     failure_ = told + (known ? "" : "\nfirst: " + first_error_);
+    retry_ = output_;
   } else {
     ui.say(told);
   }
@@ -80,7 +81,7 @@ void RangeExport::poll(Player& player, Ui& ui) {
 }
 
 std::string RangeExport::proposed(Player& player) const {
-  if (failed() && !output_.empty()) return output_;
+  if (!retry_.empty()) return retry_;
   if (!setup_.to.empty()) return setup_.to.string();
   const Footage& footage = player.footage();
   const int first = first_picture(player);
@@ -172,14 +173,16 @@ void RangeExport::begin(Player& player, Ui& ui, const std::string& output) {
   if (busy()) return ui.say("an export is under way: " + state());
   output_ = output;
   failure_.clear();
+  retry_.clear();
   first_error_.clear();
+  cancelled_ = false;
   ui.again();
   auto wanted = request(player, output);
   if (!wanted) {
     failure_ = wanted.error().text();
+    retry_ = output;
     return diagnostics_.note("export: " + failure_);
   }
-  cancelled_ = false;
   done_ = 0;
   total_ = frames_in(range_of(player));
   running_ = std::async(std::launch::async, [this, request = std::move(*wanted)] { return run(request); });
@@ -212,7 +215,7 @@ std::string RangeExport::state() const {
 
 float RangeExport::height(const Ui& ui, float width) const {
   if (busy()) return ui.px(40);
-  if (!failed()) return 0;
+  if (failure_.empty()) return 0;
   const ImGuiStyle& style = ImGui::GetStyle();
   const float wrap = width - 2 * style.WindowPadding.x;
   return std::min(ImGui::CalcTextSize(failure_.c_str(), nullptr, false, wrap).y, ui.px(160)) + style.ItemSpacing.y +
@@ -225,7 +228,8 @@ void RangeExport::draw(const Ui& ui, ImVec2 place, ImVec2 size) {
   constexpr int kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing;
-  if (ImGui::Begin("Export", nullptr, kFlags)) {
+  constexpr int kAllIsSeen = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+  if (ImGui::Begin("Export", nullptr, busy() ? kFlags | kAllIsSeen : kFlags)) {
     if (busy()) {
       draw_bar(ui);
     } else {

@@ -44,8 +44,8 @@ class RangeExport {
   /// Begins; one at a time. Errors, also later ones, stand in the window until they are dismissed.
   void begin(Player& player, Ui& ui, const std::string& output);
   bool busy() const { return running_.valid(); }
-  /// The last one did, and nobody has dismissed that yet.
-  bool failed() const { return !failure_.empty(); }
+  /// The last one was neither cancelled nor failed.
+  bool whole() const { return retry_.empty() && !cancelled_; }
   /// Ends it before its next frame: what is written is whole, and a video that is not is taken away.
   void cancel() { cancelled_ = true; }
   /// "frame 3 of 12 to out.mp4"; for who asks before closing.
@@ -58,16 +58,17 @@ class RangeExport {
  private:
   Result<BatchRequest> request(Player& player, const std::string& output) const;
   Result<void> run(const BatchRequest& request);
+  void draw_bar(const Ui& ui);
+  void draw_failure(const Ui& ui);
 
   ExportSetup setup_;
   Diagnostics& diagnostics_;
   std::uint64_t generation_ = 0;
   std::optional<std::string> look_;  ///< the preset's file when the last good look was built
-  void draw_bar(const Ui& ui);
-  void draw_failure(const Ui& ui);
-
   std::string output_;
-  std::string failure_, first_error_;  ///< of the last export; of its frames, while it runs that of its thread alone
+  std::string failure_;      ///< of the last export, until it is dismissed
+  std::string retry_;        ///< its name, when it failed
+  std::string first_error_;  ///< of its frames; while it runs, of its thread alone
   std::atomic<bool> cancelled_ = false;
   std::atomic<std::size_t> done_ = 0, total_ = 0;
   std::future<Result<void>> running_;  // last: it ends before what it uses goes

@@ -42,10 +42,10 @@ struct WindowOptions {
   std::function<Saving()> saving;                  ///< what has become of the last `save`
   std::function<void(Player&, Ui&)> export_frame;  ///< S
   std::function<void(Player&, Ui&)> export_range;  ///< Ctrl+R: asks where; a field gets the keyboard
-  std::function<Saving()> exporting;               ///< what has become of the last `export_range`
-  std::function<std::string()> export_state;       ///< while it is busy: "frame 3 of 12 to out.mp4"
-  std::function<void(Player&, Ui&)> dialogs;       ///< drawn in each frame, over everything but the help
-  Part strip;                                      ///< between picture and transport, while it wants a height
+  std::function<Saving()> exporting;          ///< what has become of the last `export_range`; failed: cancelled too
+  std::function<std::string()> export_state;  ///< while it is busy: "frame 3 of 12 to out.mp4"
+  std::function<void(Player&, Ui&)> dialogs;  ///< drawn in each frame, over everything but the help
+  Part strip;                                 ///< between picture and transport, while it wants a height
   std::function<float(const Ui&, float width)> strip_height;
   std::function<void(Player&, Ui&)> undo_save;  ///< takes back the last `save`
   std::function<void(Player&, Ui&)> search;     ///< the keyboard goes to the panel's search

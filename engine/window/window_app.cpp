@@ -57,6 +57,10 @@ Result<void> WindowApp::run() {
     note_step(turn);
     AFTERGLOW_CHECK(follow_display());
     if (!minimised_ && (redraw_ > 0 || !step_shown_)) AFTERGLOW_CHECK(draw());
+    if (minimised_ && quitting_ == Quitting::exporting && options_.hidden_panel) {
+      options_.hidden_panel(player_, interface_->ui());  // it looks after the export
+      quit_when_saved();
+    }
     wait(turn);
     take_events();
     quit_ = quit_ || options_.interrupted();

@@ -128,6 +128,7 @@ class WindowApp {
   // exporting: for the export, with all saved but what `left_` says.
   enum class Quitting { no, asked, saving, waiting, exporting } quitting_ = Quitting::no;
   std::string left_;
+  bool finishes_ = false;  ///< an export was part of the question
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented
   std::uint64_t noted_generation_ = 0;

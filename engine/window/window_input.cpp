@@ -128,6 +128,7 @@ void WindowApp::follow_pane() {
 void WindowApp::ask_to_quit(const std::filesystem::path& to_open_then) {
   redraw_ = kSettle;
   if (quitting_ != Quitting::no && quitting_ != Quitting::exporting) return;
+  quitting_ = Quitting::no;  // what was asked for last counts
   to_open_then_ = to_open_then;
   if (options_.saving && options_.saving() == WindowOptions::Saving::busy) {
     quitting_ = Quitting::waiting;  // what is being written is no loss
@@ -163,15 +164,19 @@ void WindowApp::answer_quit(QuitAnswer answer) {
   quitting_ = Quitting::no;
   if (answer == QuitAnswer::discard) leave();
   if (answer != QuitAnswer::save) return;
-  if (quit_question().changes.empty()) return await_export();
+  const QuitQuestion question = quit_question();
+  finishes_ = !question.exporting.empty();
+  if (question.changes.empty()) return await_export();
   if (!options_.save) return;
   if (options_.save(player_, interface_->ui())) await_field();
   quitting_ = Quitting::saving;
 }
 
+/// What was to be finished may have failed while the preset was saved.
 void WindowApp::await_export() {
   const QuitQuestion question = quit_question();
-  if (question.exporting.empty()) return leave();
+  const bool failed = finishes_ && options_.exporting() == WindowOptions::Saving::failed;
+  if (question.exporting.empty()) return failed ? void() : leave();
   quitting_ = Quitting::exporting;
   left_ = question.changes;
   interface_->ui().say("closes when the export has ended");

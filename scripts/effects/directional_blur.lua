@@ -8,17 +8,18 @@ local fx = require "afterglow"
 local kWhole = 35  -- columns up to which one pass reads all
 local kLongest = 127 * 129  -- as many columns as a picture has, and as many reads as a filter has
 
--- The integral from -∞ to `x` of what a read counts around its place: 1 there, falling to 0 a column away.
-local function counted(x)
-  if x <= -1 then return 0 elseif x >= 1 then return 1 end
-  return x <= 0 and (x + 1) ^ 2 / 2 or 1 - (1 - x) ^ 2 / 2
-end
-
--- The mean along a line of `length` columns; (x, y) is the step from column to column.
+-- The mean along a line of `length` columns; (x, y) is the step from column to column. What a column counts falls from 1 at its place to 0 at
+-- its neighbours', so that it is a straight line on each side.
 local function mean(length, x, y)
   local taps, half = {}, length / 2
+  if half < 1e-6 then return { taps = { { 0, 0, 1 } } } end
   for i = -math.ceil(half), math.ceil(half) do
-    taps[#taps + 1] = { i * x, i * y, (counted(half - i) - counted(-half - i)) / length }
+    local weight = 0
+    for side = i - 1, i do
+      local from, to = math.max(side, -half), math.min(side + 1, half)
+      if from < to then weight = weight + (to - from) * (1 - math.abs((from + to) / 2 - i)) end
+    end
+    taps[#taps + 1] = { i * x, i * y, weight / length }
   end
   return { taps = taps }
 end

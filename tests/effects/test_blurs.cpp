@@ -84,7 +84,8 @@ TEST_F(Effects, DualKawaseKeepsTheLightOfAPoint) {
 }
 
 TEST_F(Effects, DirectionalBlurAgrees) {
-  agree_everywhere({smeared(24, 0), smeared(7.5, 90), smeared(100, -33), smeared(0.4, 45), smeared(40, 180)});
+  agree_everywhere({smeared(24, 0), smeared(7.5, 90), smeared(100, -33), smeared(0.4, 45), smeared(35, 0),
+                    smeared(35.01, 90), smeared(63, 0), smeared(40, 180), smeared(1e-15, 20), smeared(1e-5, 0)});
   expect_skipped("fx.directional_blur { distance = 0 }", "distance is 0");
 }
 

@@ -219,6 +219,9 @@ TEST_F(SettingMessages, SignsThatWordProcessorsMake) {
             "preset.lua:1: error: unexpected symbol near '“'; allowed: plain quotes: \"text\" or 'text'");
   scene.preset("-- “\nlocal a = \"“\" .. 3 – 4\n");
   EXPECT_EQ(scene.load_error(), "preset.lua:2: error: unexpected symbol near '–'; allowed: a plain minus: -");
+  scene.preset("--[[ it's\nit's ]] local a = “x”\n");
+  EXPECT_EQ(scene.load_error(),
+            "preset.lua:2: error: unexpected symbol near '“'; allowed: plain quotes: \"text\" or 'text'");
   scene.preset("local grün = 1\n");
   EXPECT_EQ(scene.load_error(),
             "preset.lua:1: error: unexpected symbol near 'ü'; allowed: letters, digits and signs of ASCII, outside of "
@@ -235,6 +238,25 @@ TEST_F(SettingMessages, MissingPreset) {
 TEST_F(SettingMessages, AllAreScriptErrors) {
   scene.stack("fx.glow { knee = 2 }");
   EXPECT_EQ(scene.load().error().kind, ErrorKind::script);
+}
+
+/// Sums of animated values miss their ends by a rounding.
+TEST_F(SettingMessages, BeyondABoundByARoundingIsTheBound) {
+  scene.stack("fx.glow { knee = 0.3 - 0.1 * 3, tint = { 0.3 - 0.1 * 3, 1, 1 } }, fx.glow { knee = 1 + 1e-12 }");
+  const auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  const auto value = [&](std::size_t entry, const std::string& name) {
+    for (const auto& [key, of] : preset->entries()[entry].settings)
+      if (key == name) return of.number[0];
+    return -1.0;
+  };
+  EXPECT_EQ(value(0, "knee"), 0);
+  EXPECT_EQ(value(0, "tint"), 0);
+  EXPECT_EQ(value(1, "knee"), 1);
+  scene.stack("fx.glow { knee = 1.000001 }");
+  EXPECT_EQ(scene.load_error(), "preset.lua:3: error: glow.knee = 1.000001 is out of range; allowed: 0…1");
+  scene.stack("fx.glow { knee = -0.000001 }");
+  EXPECT_NE(scene.load_error().find("is out of range"), std::string::npos);
 }
 
 TEST_F(SettingMessages, ValuesThatAreFine) {
