@@ -47,7 +47,7 @@ bool glows_outside(const Picture& picture) {
   const auto glow = [](const auto* pixel, auto least) {
     return pixel[3] == 0 && std::max({pixel[0], pixel[1], pixel[2]}) >= least;
   };
-  const std::size_t few = width * height / 10000;
+  const std::size_t few = std::max<std::size_t>(width * height / 10000, 15);
   std::size_t pixels = 0;
   std::vector<float> memory;
   for (std::size_t y = 0; y < height && pixels <= few; ++y) {
