@@ -63,11 +63,11 @@ bool glows_outside(const Picture& picture) {
 
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
-  if (!strip_form(picture, format, options).alpha && has_transparency(picture))
+  const StripForm form = strip_form(picture, format, options);
+  if (!form.alpha && has_transparency(picture))
     diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
                                  format.extensions[0].substr(1),
                                  format.alpha ? " in 10 bits (--type uint16 has)" : ""));
-  const StripForm form = strip_form(picture, format, options);
   const bool codes = form.type != SampleType::half && form.type != SampleType::float32;  // their alpha is straight
   if (format.kind != OutputKind::exr && form.alpha && codes && glows_outside(picture))
     diagnostics.warn_once("glow outside",
@@ -77,14 +77,13 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
     case OutputKind::exr:
       break;
     case OutputKind::png:
-      return write_png(picture, strip_form(picture, format, options), out, options.png_level.value_or(1),
-                       options.memory);
+      return write_png(picture, form, out, options.png_level.value_or(1), options.memory);
     case OutputKind::cineon:
-      return write_cineon(picture, strip_form(picture, format, options), out);
+      return write_cineon(picture, form, out);
     case OutputKind::ppm:
     case OutputKind::pam:
     case OutputKind::pfm:
-      return write_pnm(picture, format.kind, strip_form(picture, format, options), out);
+      return write_pnm(picture, format.kind, form, out);
     default:
       AFTERGLOW_TRY(const OiioModule* module, oiio_module());
       return module->write(picture, format, out, name, options);

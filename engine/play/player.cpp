@@ -21,6 +21,10 @@ double steady_seconds() { return std::chrono::duration<double>(Clock::now().time
 /// A file or a script that fails spoils its frame; the device that fails spoils them all.
 bool ends_playing(const Error& error) { return error.kind == ErrorKind::device; }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
 }  // namespace
 
 void Player::State::wake() {
@@ -131,7 +135,7 @@ bool Player::State::wants_more() const {
     Stack* const stack = session ? session->live().stack() : nullptr;
     if (!stack || !stack->preset().may_change()) continue;
     for (const std::string& name : stack->preset().needs())
-      if (std::ranges::find(needs.auxiliary, name) == needs.auxiliary.end()) return true;
+      if (!contains(needs.auxiliary, name)) return true;
   }
   return false;
 }
@@ -149,7 +153,7 @@ std::set<std::string> Player::State::awaited() const {
 
 /// Was the picture read for all that the looks want?
 bool Player::State::was_asked(const Picture& read) const {
-  const auto asked = [&](const std::string& name) { return std::ranges::find(read.asked, name) != read.asked.end(); };
+  const auto asked = [&](const std::string& name) { return contains(read.asked, name); };
   return std::ranges::all_of(std::array{first.get(), second.get()}, [&](LiveSession* session) {
     Stack* const stack = session ? session->live().stack() : nullptr;
     return !stack || std::ranges::all_of(stack->preset().needs(), asked);
@@ -199,9 +203,7 @@ void Player::State::take_builds() {
   if (second && second->live().update()) changed = true;
   if (changed) dirty = reloaded = true;
   const std::set<std::string> more = awaited();
-  const auto known = [&](const std::string& name) {
-    return std::ranges::find(needs.auxiliary, name) != needs.auxiliary.end();
-  };
+  const auto known = [&](const std::string& name) { return contains(needs.auxiliary, name); };
   if (changed || !std::ranges::all_of(more, known)) follow_needs();
 }
 
@@ -430,22 +432,6 @@ Transport& Player::transport() { return state_->transport; }
 View& Player::view() { return state_->view; }
 const std::filesystem::path& Player::preset_file() const { return state_->options.preset; }
 const std::filesystem::path& Player::other_file() const { return state_->options.other_preset; }
-std::function<Result<Picture>()> Player::reader_with_inputs() const {
-  const State& s = *state_;
-  if (s.shown.position < 0 || !s.picture) return {};
-  const int key = s.footage->frame(s.shown.position).picture;
-  FootageNeeds needs = s.needs;
-  for (const char* name : {"depth", "normal", "motion"})
-    if (std::ranges::find(needs.auxiliary, name) == needs.auxiliary.end()) needs.auxiliary.emplace_back(name);
-  const ReadOptions& read = s.options.footage.read;
-  const bool beside = read.depth.given() || read.normal.given() || read.motion.given();
-  if (needs == s.needs || (s.footage->movie(key) && !beside)) return {};
-  return [footage = s.footage, key, needs]() -> Result<Picture> {
-    Diagnostics silent;  // it was read before
-    return footage->read(key, needs, silent);
-  };
-}
-
 const Footage& Player::footage() const { return *state_->footage; }
 const FootageOptions& Player::footage_options() const { return state_->options.footage; }
 Sound* Player::sound() { return state_->sound.get(); }

@@ -331,6 +331,22 @@ Result<void> Player::open_footage(const std::vector<std::string>& inputs) {
   return {};
 }
 
+std::function<Result<Picture>()> Player::reader_with_inputs() const {
+  const State& s = *state_;
+  if (s.shown.position < 0 || !s.picture) return {};
+  const int key = s.footage->frame(s.shown.position).picture;
+  FootageNeeds needs = s.needs;
+  for (const char* name : {"depth", "normal", "motion"})
+    if (std::ranges::find(needs.auxiliary, name) == needs.auxiliary.end()) needs.auxiliary.emplace_back(name);
+  const ReadOptions& read = s.options.footage.read;
+  const bool beside = read.depth.given() || read.normal.given() || read.motion.given();
+  if (needs == s.needs || (s.footage->movie(key) && !beside)) return {};
+  return [footage = s.footage, key, needs]() -> Result<Picture> {
+    Diagnostics silent;  // it was read before
+    return footage->read(key, needs, silent);
+  };
+}
+
 Result<void> Player::open_preset(const std::filesystem::path& preset) {
   State& s = *state_;
   AFTERGLOW_TRY(auto opened, LiveSession::open(s.device, preset, s.live_options(s.options.live.stack.preset.overrides),

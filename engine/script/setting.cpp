@@ -20,10 +20,6 @@ std::string list_text(const SettingValue& value, int count) {
   return out + "}";
 }
 
-}  // namespace
-
-namespace {
-
 /// So that `parse_value` finds the same text: within quotation marks that it has not, else as it is.
 std::string quoted(const std::string& text) {
   for (const char mark : {'"', '\''})

@@ -84,6 +84,15 @@ void name_entries(TableReader& table, DeclaredStack& stack) {
   }
 }
 
+/// One of the words, or another, which is noted as a failure; empty: not said.
+std::string read_word(TableReader& table, const char* key, const std::vector<std::string>& words) {
+  const auto word = table.text(key);
+  if (word && std::ranges::find(words, *word) == words.end())
+    table.fail(failure(fmt::format("{}: {} = \"{}\"", table.what(), key, tidy_message(*word, 40)), {key}, join(words),
+                       nearest_name(*word, words)));
+  return word.value_or("");
+}
+
 }  // namespace
 
 void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
@@ -101,20 +110,8 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
       table.fail(failure(fmt::format("{}: input_space: {}", table.what(), found.error().message), {"input_space"},
                          found.error().allowed, found.error().nearest));
   }
-  if (const auto gamut = table.text("gamut")) {
-    stack.gamut = *gamut;
-    const std::vector<std::string> words{"cut", "keep"};
-    if (std::ranges::find(words, *gamut) == words.end())
-      table.fail(failure(fmt::format("{}: gamut = \"{}\"", table.what(), tidy_message(*gamut, 40)), {"gamut"},
-                         join(words), nearest_name(*gamut, words)));
-  }
-  if (const auto alpha = table.text("alpha")) {
-    stack.alpha = *alpha;
-    const std::vector<std::string> words{"straight", "associated"};
-    if (std::ranges::find(words, *alpha) == words.end())
-      table.fail(failure(fmt::format("{}: alpha = \"{}\"", table.what(), tidy_message(*alpha, 40)), {"alpha"},
-                         join(words), nearest_name(*alpha, words)));
-  }
+  stack.gamut = read_word(table, "gamut", {"cut", "keep"});
+  stack.alpha = read_word(table, "alpha", {"straight", "associated"});
   if (const auto height = table.integer("reference_height")) stack.reference_height = height;
   if (stack.reference_height && (*stack.reference_height < 1 || *stack.reference_height > 16384))
     table.fail(failure(fmt::format("{}: reference_height = {} is out of range", table.what(), *stack.reference_height),

@@ -56,13 +56,24 @@ std::string PanelStack::told(const StackEdit& edit, const std::string& entry) {
   }
 }
 
+/// What the last change calls an entry; null: it is gone.
+const std::string* PanelStack::name_after(const std::string& before) const {
+  const auto found = std::ranges::find(renamed_, before, &std::pair<std::string, std::string>::first);
+  return found == renamed_.end() ? nullptr : &found->second;
+}
+
+std::string PanelStack::called_now(const std::string& before) const {
+  const std::string* now = name_after(before);
+  return now ? *now : before;
+}
+
 /// Names of entries that edits wait for.
-void PanelStack::follow(const StackRewrite& rewrite) {
+void PanelStack::follow() {
   std::erase_if(waiting_, [&](StackEdit& edit) {
     if (edit.kind == StackEdit::Kind::add) return false;
-    const auto found = std::ranges::find(rewrite.renamed, edit.name, &std::pair<std::string, std::string>::first);
-    if (found != rewrite.renamed.end()) edit.name = found->second;
-    return found == rewrite.renamed.end();
+    const std::string* now = name_after(edit.name);
+    if (now) edit.name = *now;
+    return now == nullptr;
   });
 }
 
@@ -88,11 +99,10 @@ bool PanelStack::poll(PanelPort& port, bool may_begin) {
   made_.push_back({change.text, std::make_shared<const std::string>(std::move(base))});
   const std::string& entry = outcome.rewrite.entry;
   if (edit_.kind == StackEdit::Kind::duplicate) {
-    for (const auto& [before, now] : change.renamed)
-      if (before == edit_.name) change.copied = now;
+    if (const std::string* now = name_after(edit_.name)) change.copied = *now;
     change.copy = entry;
   }
-  follow(outcome.rewrite);
+  follow();
   port.set_stack(change);
   message_ = told(edit_, entry);
   shown_ = entry;
@@ -153,11 +163,6 @@ void PanelStack::wrote(const std::string& before, std::string after) {
   replace_base(before, std::move(after));
   seen_.reset();
   conflict_ = false;
-}
-
-std::string PanelStack::called_now(const std::string& before) const {
-  const auto found = std::ranges::find(renamed_, before, &std::pair<std::string, std::string>::first);
-  return found == renamed_.end() ? before : found->second;
 }
 
 }  // namespace afterglow

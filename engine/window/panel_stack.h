@@ -78,7 +78,8 @@ class PanelStack {
   std::vector<std::pair<std::string, std::string>> renamed_;  ///< by the last change
   bool failed_ = false;
   void start(PanelPort& port);
-  void follow(const StackRewrite& rewrite);
+  const std::string* name_after(const std::string& before) const;
+  void follow();
   std::deque<StackEdit> waiting_;
   StackEdit edit_;
   StackText made_from_;
