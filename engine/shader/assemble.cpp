@@ -66,6 +66,8 @@ const char* format_word(ImageRead read) {
   }
 }
 
+constexpr const char* kLeastCover = "1.17549435e-38";  ///< an alpha below it is none, as kLeastAlpha of core/alpha.h
+
 class Assembler {
  public:
   explicit Assembler(const KernelDesc& kernel) : kernel_(kernel) {}
@@ -214,9 +216,9 @@ class Assembler {
   void divide() {
     row_ += fmt::format(
         "  float ag_alpha{0} = ag_color.a, ag_cover{0} = mix(1.0, min(ag_color.a, 65504.0), ag_color.a >= "
-        "1.17549435e-38);\n"
+        "{1});\n"
         "  ag_color = vec4(clamp(ag_color.rgb / ag_cover{0}, -3.4028234e38, 3.4028234e38), ag_color.a);\n",
-        ++divisions_);
+        ++divisions_, kLeastCover);
   }
   void multiply() { row_ += fmt::format("  ag_color = vec4(ag_color.rgb * ag_cover{0}, ag_alpha{0});\n", divisions_); }
 
@@ -380,8 +382,8 @@ class Assembler {
     if (!stage.straight || !stage.lights_black) return out;
     return out + fmt::format(
                      "  ag_color.rgb = mix(ag_color.rgb, max(ag_color.rgb - {0}(vec4(vec3(0.0), ag_alpha{2}){1}).rgb, "
-                     "min(ag_color.rgb, 0.0)), bvec3(ag_alpha{2} < 1.17549435e-38));\n",
-                     function, arguments, divisions_);
+                     "min(ag_color.rgb, 0.0)), bvec3(ag_alpha{2} < {3}));\n",
+                     function, arguments, divisions_, kLeastCover);
   }
 
   /// Each row's colour by a sample shader, within what is done to a row, so that rows take turns and share their reads.

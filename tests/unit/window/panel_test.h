@@ -133,6 +133,13 @@ class PanelTest : public ::testing::Test {
     what_();
     interface.end();
   }
+  /// Does that to the chosen entry, and takes what comes of it.
+  void change_stack(Panel::EntryAction action) {
+    panel->act(interface.ui(), *port, action);
+    frame();
+    panel->stack().wait();
+    frame();
+  }
   /// What the first window of a frame says in words.
   std::string words() {
     move(-100, -100);  // tooltips are windows too

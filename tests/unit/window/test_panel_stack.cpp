@@ -74,10 +74,7 @@ TEST_F(PanelTest, WhereAnEntryIsRemovedTheNextIsChosen) {
     return out;
   };
   const auto act = [&](Panel::EntryAction action) {
-    panel->act(ui, *port, action);
-    frame();
-    panel->stack().wait();
-    frame();
+    change_stack(action);
     port->reload();
     frame();
   };
@@ -100,10 +97,7 @@ TEST_F(PanelTest, WhereAnEntryIsRemovedTheNextIsChosen) {
 TEST_F(PanelTest, WhatIsDoneToAnEntryThatIsNotBuiltYetWaits) {
   Ui& ui = interface.ui();
   panel->choose_next(ui, *port, 1);
-  panel->act(ui, *port, Panel::EntryAction::duplicate);
-  frame();
-  panel->stack().wait();
-  frame();
+  change_stack(Panel::EntryAction::duplicate);
   const std::string made = panel->chosen();
   EXPECT_THAT(made, ::testing::EndsWith("#2"));
   ui.message.clear();
@@ -121,10 +115,7 @@ TEST_F(PanelTest, WhatIsDoneToAnEntryThatIsNotBuiltYetWaits) {
 TEST_F(PanelTest, StackAndFileDisagree) {
   Ui& ui = interface.ui();
   panel->choose_next(ui, *port, 1);
-  panel->act(ui, *port, Panel::EntryAction::remove);
-  frame();
-  panel->stack().wait();
-  frame();
+  change_stack(Panel::EntryAction::remove);
   std::string text = kPreset;
   text.replace(text.find("aces"), 4, "none");
   std::ofstream(file) << text;
@@ -157,10 +148,7 @@ TEST_F(PanelTest, StackAndFileDisagree) {
 TEST_F(PanelTest, AStackOfTheHistoryGoesByTheFileThatItWasMadeFrom) {
   const auto remove_next = [&] {
     panel->choose_next(interface.ui(), *port, panel->chosen().empty() ? 1 : -1);
-    panel->act(interface.ui(), *port, Panel::EntryAction::remove);
-    frame();
-    panel->stack().wait();
-    frame();
+    change_stack(Panel::EntryAction::remove);
     ASSERT_FALSE(panel->stack().failed()) << panel->stack().message();
     port->reload();
     frame();
