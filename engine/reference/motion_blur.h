@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Motion blur by motion vectors along each pixel's own way and the longest around it, see math.md §16.
+// Motion blur by motion vectors along each pixel's own way and two of those around it, see math.md §16.
 #pragma once
 
 #include "reference/double_image.h"

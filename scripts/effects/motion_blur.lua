@@ -2,7 +2,7 @@
 -- Motion blur from motion vectors, after M. McGuire, P. Hennessy, M. Bukowski, B. Osman, "A Reconstruction Filter for Plausible Motion Blur"
 -- (I3D 2012), J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare" (SIGGRAPH 2014), and J.-P. Guertin, M. McGuire,
 -- D. Nowrouzezahrai, "A Fast and Stable Feature-Aware Motion Blur Filter" (HPG 2014): a pixel is blurred along its own way, and what is in front
--- of it and moves otherwise comes along the longest way around. Every pixel of a way is read and counts for the part that the way covers, so that
+-- of it and moves otherwise comes along the longest way around, or along the one farthest aside of that. Every pixel of a way is read and counts for the part that the way covers, so that
 -- nothing is left to chance: no grain where little moves, no stripes where much does. math.md §16.
 -- Motion is in pixels in one frame, x to the right and y up, as renderers write it (Blender's Vector pass, Nuke's forward.u and .v).
 local fx = require "afterglow"
@@ -32,9 +32,9 @@ return fx.effect {
     local across, down = (source.width + tile - 1) // tile, (source.height + tile - 1) // tile
     local motion = g:pass { shader = "motion_blur/motion", source = source, motion = g:input("motion"), depth = depth or source, has_depth = depth ~= nil,
                             scale = { s.motion_scale[1] * shutter, s.motion_scale[2] * shutter }, max_radius = radius }
-    local rows = g:pass { shader = "motion_blur/longest", source = motion, size = { across, source.height }, block = tile, down = false, name = "rows" }
+    local rows = g:pass { shader = "motion_blur/longest", source = motion, size = { across, source.height }, block = tile, name = "rows" }
     local tiles = g:pass { shader = "motion_blur/longest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
-    local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles, channels = 2 }
+    local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles, max_radius = radius }
     return g:pass { shader = "motion_blur/gather", source = motion, picture = source, longest = neighbours, tiles = 1 / tile, samples = s.samples,
                     hardness = depth and 1 / s.depth_softness or 1, sparse = 2 * radius > s.samples }
   end,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Half the way that a pixel moves while the shutter is open, held to max_radius (xy), how near it is (z), and the way's length before it was
-// held (w). Without depth, what moves farther is nearer.
+// Half the way that a pixel moves while the shutter is open, held to max_radius (xy), how near it is (z), and by how many times the way was
+// longer before (w). Without depth, what moves farther is nearer.
 layout(constant_id = 0) const bool has_depth = false;
 
 uniform vec2 scale;
@@ -9,6 +9,6 @@ uniform float max_radius;
 vec4 apply(vec4 color, vec4 motion, vec4 depth) {
   vec2 way = clamp(motion.xy * scale, -1e9, 1e9);
   float length_of_way = length(way);
-  if (length_of_way > max_radius) way *= max_radius / length_of_way;
-  return vec4(way, has_depth ? -depth.r : min(length_of_way, max_radius), length_of_way);
+  float longer = max(length_of_way / max_radius, 1.0);
+  return vec4(way / longer, has_depth ? -depth.r : min(length_of_way, max_radius), min(longer, 3e4));
 }

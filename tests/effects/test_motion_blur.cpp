@@ -95,6 +95,31 @@ TEST_F(Effects, AMovingBarCoversAsItPasses) {
     }
 }
 
+TEST_F(Effects, ABarCoversAsItPassesWhereTheGroundMovesOtherwise) {
+  // Grey ground that moves down while the bar moves across; also where it moves farther than the bar, and where
+  // something else near moves farther along the bar's own way.
+  const auto bar_over = [](double ground, double other) {
+    Scene scene = bar(16);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 96; ++x) {
+        if (x >= 40 && x < 56) continue;
+        scene.source.at(x, y) = Rgba(Rgb(0.25), 1);
+        scene.motion->at(x, y) = x < 8 ? Rgba(other, 0, 0, 1) : Rgba(0, ground, 0, 1);
+      }
+    return run_stack("fx.motion_blur { shutter_angle = 360 }", scene, Way::plain).result;
+  };
+  for (const double ground : {0.0, 0.9, 12.0, 15.9, 16.0, 20.0, 40.0})
+    for (const double other : {0.0, 32.0}) {
+      const auto made = bar_over(ground, other);
+      for (int x = 24; x < 96; ++x) {
+        const auto passed = [&](double edge) { return glm::clamp((x + 0.5 - edge + 8) / 16, 0.0, 1.0); };
+        const double share = passed(40) - passed(56);
+        EXPECT_NEAR(made[4 * static_cast<std::size_t>(96 * 16 + x)], 0.25 + 0.75 * share, 0.02)
+            << x << " ground " << ground << " other " << other;
+      }
+    }
+}
+
 TEST_F(Effects, LongWaysShowNoStripes) {
   // One white line on black that moves with everything: an even band.
   Scene scene{"line", DoubleImage(96, 40, Rgba(0, 0, 0, 1)), DoubleImage(96, 40, Rgba(5, 0, 0, 1)), {}};
