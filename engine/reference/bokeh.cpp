@@ -15,7 +15,8 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// How an iris from a radius on is read; `aside`: what all but the iris blurs, square pixels an axis.
+/// How an iris that blurs as a round one from a radius on is read; `aside`: what all but the iris blurs, square pixels
+/// an axis.
 struct BokehWay {
   double from;
   int side, step;
@@ -31,7 +32,7 @@ struct BokehWay {
 };
 
 constexpr std::array<BokehWay, 14> kBokehWays{{{0, 1, 1},
-                                               {2.5, 1, 2},
+                                               {3.3, 1, 2},
                                                {5, 2, 1},
                                                {11, 3, 1},
                                                {16, 4, 1},
@@ -92,17 +93,22 @@ std::vector<Tap2d> reads(const Aperture& iris, double radius, double rim, int st
 }
 
 /// The reads whose mean square, with what else blurs, is that of the iris of `radius` pixels; `soft`: all that is not
-/// the iris.
+/// the iris. By halves, as slow as it is sure.
 std::vector<Tap2d> compensated(const Aperture& iris, double radius, const BokehWay& way, double soft) {
   const double rim = std::sqrt(12 * (soft - way.aside())) / way.side;
-  double wanted = square(radius) - 4 * soft / iris.fullness();
+  const double wanted = iris.fullness() * square(radius) / 4 - way.aside();
   std::vector<Tap2d> taps;
-  for (int i = 0; i < 3; ++i) {
-    wanted = glm::max(wanted, square(radius) / 4);
-    taps = reads(iris, std::sqrt(wanted) / way.side, rim, way.step);
-    double made = way.aside();
+  const auto makes_enough = [&](double wide) {
+    taps = reads(iris, wide / way.side, rim, way.step);
+    double made = 0;
     for (const auto& tap : taps) made += tap.weight * (square(tap.dx) + square(tap.dy)) / 2 * square(way.side);
-    wanted += square(radius) - 4 * made / iris.fullness();
+    return made >= wanted;
+  };
+  double low = radius / 2, high = 2 * radius + way.spacing();
+  if (makes_enough(low)) return taps;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    (makes_enough(middle) ? high : low) = middle;
   }
   return taps;
 }
@@ -124,19 +130,20 @@ DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& s) {
     const double y = glm::min(luminance(Rgb(p)), 1.0), weight = 1 + s.highlights * y * y;
     p = Rgba(Rgb(p) * weight, weight);
   }
+  const Aperture iris{s.blades, s.rotation * std::numbers::pi / 180};
+  const double as_round = radius * std::sqrt(iris.fullness());
   const auto next =
-      std::find_if(kBokehWays.begin(), kBokehWays.end(), [&](const BokehWay& way) { return way.from > radius; });
+      std::find_if(kBokehWays.begin(), kBokehWays.end(), [&](const BokehWay& way) { return way.from > as_round; });
   const BokehWay way = *(next - 1);
   double soft = way.softness();
   if (next != kBokehWays.end()) {
-    const double part = (square(radius) - square(way.from)) / (square(next->from) - square(way.from));
+    const double part = (square(as_round) - square(way.from)) / (square(next->from) - square(way.from));
     soft += square(part) * (next->softness() - soft);
   }
   if (way.side > 1) {
     const Size small{(source.width + way.side - 1) / way.side, (source.height + way.side - 1) / way.side};
     image = resample(image, small, {.x = bokeh_tent(way.side), .y = bokeh_tent(way.side)});
   }
-  const Aperture iris{s.blades, s.rotation * std::numbers::pi / 180};
   image = resample(image, image.size(), {.taps = compensated(iris, radius, way, soft)});
   if (way.step == 2)
     image = resample(image, image.size(), {.taps = {{-.5, -.5, .25}, {.5, -.5, .25}, {-.5, .5, .25}, {.5, .5, .25}}});

@@ -62,9 +62,12 @@ struct Tube {
 }  // namespace
 
 DoubleImage letterbox(const DoubleImage& source, const Letterbox& s) {
-  const double across = glm::min<double>(source.width, source.height * s.aspect);
-  const double down = glm::min<double>(source.height, source.width / s.aspect);
-  if (source.width - across < 0.5 && source.height - down < 0.5) return source;
+  const auto shown = [](int n, double length) {
+    const double bars = glm::max(n - length, 0.0);
+    return bars < 0.5 ? n : bars < 1 ? n + 1 - 2 * bars : length;
+  };
+  const double across = shown(source.width, source.height * s.aspect);
+  const double down = shown(source.height, source.width / s.aspect);
   return generate(source.size(), [&](int x, int y) {
     const Rgba& p = source.at(x, y);
     const double share = in_window(x, source.width, across, s.offset) * in_window(y, source.height, down, s.offset);

@@ -2,14 +2,15 @@
 -- Bokeh blur: out of focus as through an iris, everywhere alike (`depth_of_field` looks at distance). Wide irises work on a smaller picture. math.md §36.
 local fx = require "afterglow"
 
--- How an iris of at least `from` pixels is read: on a picture whose pixels are `side` pixels of the source wide, at every `step`th of them.
+-- How an iris that is as wide as a round one of at least `from` pixels is read: on a picture whose pixels are `side` pixels of the source wide, at every `step`th of them.
 -- An iris of `from` pixels is four of the smaller pixels wide or more, but for the narrowest: that many reads take as long as the picture is worth.
 local kWays = {
-  { from = 0, side = 1, step = 1 }, { from = 2.5, side = 1, step = 2 }, { from = 5, side = 2, step = 1 }, { from = 11, side = 3, step = 1 },
+  { from = 0, side = 1, step = 1 }, { from = 3.3, side = 1, step = 2 }, { from = 5, side = 2, step = 1 }, { from = 11, side = 3, step = 1 },
   { from = 16, side = 4, step = 1 }, { from = 28, side = 6, step = 1 }, { from = 40, side = 8, step = 1 }, { from = 56, side = 12, step = 1 },
   { from = 80, side = 16, step = 1 }, { from = 112, side = 24, step = 1 }, { from = 160, side = 32, step = 1 }, { from = 224, side = 48, step = 1 },
   { from = 320, side = 64, step = 1 }, { from = 448, side = 96, step = 1 },
 }
+local kMostTurns = 90  -- in search of the iris that is as wide as the lens's; ten as a rule
 local kWidest = 672  -- pixels: 64 at a tenth of this size, and as many reads as a filter has
 
 -- Mean square of a filter's offsets, whose weights sum up to 1.
@@ -49,7 +50,7 @@ local function aside(way)
   return variance(tent(side)) + side ^ 2 / (side > 2 and 3 or 6)
 end
 
--- The way for a radius, and how wide the rim is that its texels' shares of the iris make, in pixels. It grows from that of one texel until all is as soft as the next way is: a moving radius shows no step.
+-- The way for the radius of a round iris, and how wide the rim is that its texels' shares of the iris make, in pixels. It grows from that of one texel until all is as soft as the next way is: a moving radius shows no step.
 local function way_for(radius)
   local n = 1
   while kWays[n + 1] and radius >= kWays[n + 1].from do n = n + 1 end
@@ -61,28 +62,41 @@ local function way_for(radius)
     local part = (radius ^ 2 - way.from ^ 2) / (next_way.from ^ 2 - way.from ^ 2)
     soft = soft + part ^ 2 * (aside(next_way) + (next_way.side * next_way.step) ^ 2 / 12 - soft)
   end
-  return way, math.sqrt(12 * (soft - aside(way))), soft
+  return way, math.sqrt(12 * (soft - aside(way)))
 end
 
--- Radius of the smallest iris with `blades` straight sides (fewer than 3: round) that has the point on its rim.
-local function iris_radius(x, y, blades, turn)
-  if blades < 3 then return math.sqrt(x * x + y * y) end
-  local radius = 0
-  for i = 1, blades do
+-- An iris with `blades` straight sides (fewer than 3: round): how far away each side's middle lies, as x and y of what a point is multiplied by.
+local function iris_of(blades, turn)
+  local sides, narrow = {}, math.cos(math.pi / math.max(blades, 3))
+  for i = 1, blades >= 3 and blades or 0 do
     local angle = turn + 2 * math.pi * (i - 0.5) / blades
-    radius = math.max(radius, (x * math.cos(angle) + y * math.sin(angle)) / math.cos(math.pi / blades))
+    sides[i] = { math.cos(angle) / narrow, math.sin(angle) / narrow }
+  end
+  -- `steepest`: how much farther a point may be for one pixel aside; `as_round`: radius of the round iris that blurs as much, to that of the circle around this one.
+  local as_round = blades < 3 and 1 or math.sqrt((2 + math.cos(2 * math.pi / blades)) / 3)
+  return { sides = sides, steepest = blades < 3 and 1 or 1 / narrow, as_round = as_round }
+end
+
+-- Radius of the smallest iris that has the point on its rim.
+local function iris_radius(x, y, iris)
+  if #iris.sides == 0 then return math.sqrt(x * x + y * y) end
+  local radius = 0
+  local sides = iris.sides
+  for i = 1, #sides do
+    local away = x * sides[i][1] + y * sides[i][2]
+    if away > radius then radius = away end
   end
   return radius
 end
 
 -- Share of a square of `width` around the point that lies in the iris, by its sixteenths.
-local function share(x, y, width, radius, blades, turn)
-  local away = radius - iris_radius(x, y, blades, turn)
-  if math.abs(away) > width / (blades < 3 and 1 or math.cos(math.pi / blades)) then return away > 0 and 1 or 0 end
+local function share(x, y, width, radius, iris)
+  local away = radius - iris_radius(x, y, iris)
+  if math.abs(away) > width * iris.steepest then return away > 0 and 1 or 0 end
   local part, sum = width / 4, 0
   for j = -1.5, 1.5 do
     for i = -1.5, 1.5 do
-      local rim = iris_radius(x + i * part, y + j * part, blades, turn)
+      local rim = iris_radius(x + i * part, y + j * part, iris)
       sum = sum + math.min(math.max((radius - rim) / part + 0.5, 0), 1) / 16
     end
   end
@@ -90,12 +104,12 @@ local function share(x, y, width, radius, blades, turn)
 end
 
 -- The iris as reads of every `step`th texel. Lengths in texels; `rim`: width of the square whose share a texel's weight is.
-local function iris(radius, blades, turn, step, rim)
+local function reads_of(radius, iris, step, rim)
   local taps, sum = {}, 0
   local reach = math.ceil((radius + rim) / step)
   for j = -reach, reach do
     for i = -reach, reach do
-      local weight = share(i * step, j * step, rim, radius, blades, turn)
+      local weight = share(i * step, j * step, rim, radius, iris)
       if weight > 0 then
         taps[#taps + 1] = { i * step, j * step, weight }
         sum = sum + weight
@@ -107,18 +121,31 @@ local function iris(radius, blades, turn, step, rim)
   return { taps = taps }
 end
 
--- The iris that blurs, together with `soft` square pixels an axis of other means (its own texels' among them), as much as one of `radius` pixels would alone: its mean
--- square is corrected twice by what the reads make of it.
-local function compensated(radius, blades, turn, way, rim, soft)
-  local fullness = blades < 3 and 1 or (2 + math.cos(2 * math.pi / blades)) / 3  -- of a polygon, to that of the circle around it
-  local wanted = fullness * radius ^ 2 / 4 - aside(way)
-  local square, filter = radius ^ 2 - 4 * soft / fullness, nil
-  for i = 1, 3 do
-    square = math.max(square, radius ^ 2 / 4)
-    filter = iris(math.sqrt(square) / way.side, blades, turn, way.step, rim / way.side)
-    local made = 0
+-- The reads that blur, with what else does, as much as an iris of `radius` pixels would alone: their mean square is what is left to them.
+local function compensated(radius, iris, way, rim)
+  local wanted = iris.as_round ^ 2 * radius ^ 2 / 4 - aside(way)
+  local function reads(wide)
+    local filter, made = reads_of(wide / way.side, iris, way.step, rim / way.side), 0
     for _, tap in ipairs(filter.taps) do made = made + tap[3] * (tap[1] ^ 2 + tap[2] ^ 2) / 2 * way.side ^ 2 end
-    square = square + 4 * (wanted - made) / fullness
+    return filter, made - wanted
+  end
+  local low, high = radius / 2, 2 * radius + way.side * way.step
+  local filter, off = reads(low)
+  if off >= 0 then return filter end
+  local off_low, off_high = off, select(2, reads(high))
+  for turn = 1, kMostTurns do
+    -- By the line between both ends, where an end that stays counts half as much (Illinois); each fourth time by halves, for the curve has a corner
+    -- where the iris comes to the next texel.
+    local wide, before = turn % 4 == 0 and (low + high) / 2 or high - off_high * (high - low) / (off_high - off_low), off
+    filter, off = reads(wide)
+    if math.abs(off) <= 1e-7 * wanted then break end
+    if off < 0 then
+      low, off_low = wide, off
+      if before < 0 and turn > 1 then off_high = off_high / 2 end
+    else
+      high, off_high = wide, off
+      if before >= 0 then off_low = off_low / 2 end
+    end
   end
   return filter
 end
@@ -157,10 +184,11 @@ return fx.effect {
       image = g:pass { shader = "bokeh_blur/weigh", source = image, highlights = s.highlights, name = "weigh" }
     end
     local radius = math.min(s.radius, kWidest)
-    local way, rim, soft = way_for(radius)
+    local iris = iris_of(s.blades, s.rotation * math.pi / 180)
+    local way, rim = way_for(radius * iris.as_round)
     local side = way.side
     if side > 1 then image = smaller(g, image, side) end
-    image = g:filter { source = image, filter = compensated(radius, s.blades, s.rotation * math.pi / 180, way, rim, soft), name = "iris" }
+    image = g:filter { source = image, filter = compensated(radius, iris, way, rim), name = "iris" }
     if way.step == 2 then image = g:filter { source = image, filter = fx.filters.box(0.5), name = "fill" } end
     if side > 1 then
       local up = side > 2 and fx.filters.bspline() or fx.filters.bilinear()

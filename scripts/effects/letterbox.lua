@@ -2,6 +2,12 @@
 -- Letterbox: bars that leave a window of another shape. Its edges are exact to parts of a pixel, so that it moves smoothly when the shape is animated.
 local fx = require "afterglow"
 
+-- How much of n pixels is seen in a shape that has `length` of them. Less than half a pixel's bar is none ("1.78" means 16:9); up to one it grows faster, so that nothing jumps.
+local function shown(n, length)
+  local bars = n - length
+  return n - (bars < 1 and math.max(2 * bars - 1, 0) or bars)
+end
+
 -- Where the window lies along an axis of n pixels of which it has `length`: its first and last whole pixel, and how much the ones beside them show,
 -- then how much of those two the bars cover: as numbers of their own, for a bright bar is seen where it covers a millionth.
 local function window(n, length, offset)
@@ -31,8 +37,8 @@ return fx.effect {
   },
   build = function(g, s, source)
     local across, down = source.width, source.height
-    local shown_across, shown_down = math.min(across, down * s.aspect), math.min(down, across / s.aspect)
-    if across - shown_across < 0.5 and down - shown_down < 0.5 then
+    local shown_across, shown_down = shown(across, down * s.aspect), shown(down, across / s.aspect)
+    if shown_across == across and shown_down == down then
       g:skip("the picture has this shape")
       return source
     end

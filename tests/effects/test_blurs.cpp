@@ -208,11 +208,29 @@ Spread spread_of_bokeh(double radius, int blades, int moved) {
 }
 
 TEST_F(Effects, BokehIsAsWideAsItsIrisAtEveryRadius) {
-  for (const double radius : {3.9, 4.1, 4.95, 5.05, 10.9, 11.1, 13.9, 14.1, 15.9, 16.1, 27.9, 28.1, 39.9, 40.1})
-    for (const int blades : {0, 6}) {
-      const double ideal = blades == 0 ? radius / 2 : radius * std::sqrt(2.5 / 12);
+  for (const double radius :
+       {0.3, 1.0, 2.6, 3.2, 3.4, 3.9, 4.1, 4.95, 5.05, 10.9, 11.1, 13.9, 14.1, 15.9, 16.1, 27.9, 28.1, 39.9, 40.1})
+    for (const int blades : {0, 3, 6}) {
+      const double ideal = radius / 2 * (blades == 0 ? 1 : std::sqrt(blades == 3 ? 0.5 : 2.5 / 3));
       EXPECT_NEAR(spread_of_bokeh(radius, blades, 0).deviation, ideal, 0.03 * ideal) << radius << ' ' << blades;
     }
+}
+
+TEST_F(Effects, BokehGrowsWithoutJumps) {
+  // A point's light at its middle, and how wide it is, while the radius of an iris grows by 2 %.
+  const auto of_middle = [](double radius, int blades) {
+    const auto entry = fmt::format("fx.bokeh_blur {{ radius = {}, blades = {}, rotation = 17 }}", radius, blades);
+    return run_stack(entry, point({48, 48}), Way::plain).result[4 * (24 * 48 + 24)];
+  };
+  for (const int blades : {0, 3, 4, 5, 7}) {
+    double before = of_middle(1.5, blades);
+    for (double radius = 1.53; radius < 7.5; radius *= 1.02) {
+      const double now = of_middle(radius, blades);
+      EXPECT_GT(now, 0.85 * before) << radius << ' ' << blades;
+      EXPECT_LT(now, 1.1 * before) << radius << ' ' << blades;
+      before = now;
+    }
+  }
 }
 
 TEST_F(Effects, BokehMovesWithItsLight) {

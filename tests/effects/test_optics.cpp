@@ -250,6 +250,16 @@ TEST_F(Effects, LetterboxAgrees) {
                     barred({.aspect = 0.499999, .color = {0.24, 1e5, 0.07}})});  // a bar over a millionth of a pixel
   Scene square{"square", DoubleImage(64, 64, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
   EXPECT_FALSE(run_stack("fx.letterbox { aspect = 1 }", square, Way::plain).ran());
+  EXPECT_FALSE(run_stack("fx.letterbox { aspect = 0.9925 }", square, Way::plain).ran());  // 0.48 pixels
+  double before = 0;
+  for (double bars = 0; bars < 2.5; bars += 0.1) {  // of an animated shape: pixels across that they cover
+    const auto shape = fmt::format("fx.letterbox {{ aspect = {}, offset = 0.3 }}", (64 - bars) / 64);
+    double hidden = 0;
+    const auto made = run_stack(shape, square, Way::plain).result;
+    for (std::size_t i = 0; i < made.size(); i += 4) hidden += (0.5 - made[i]) / 0.5 / 64;
+    EXPECT_NEAR(hidden, before + 0.1, 0.11) << bars;
+    before = hidden;
+  }
   expect_skipped("fx.letterbox { aspect = 0 }", "aspect is 0");
 }
 
