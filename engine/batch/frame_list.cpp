@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <system_error>
@@ -239,6 +240,13 @@ Result<void> tell_gaps(const std::string& input, const std::vector<FrameFile>& f
   return {};
 }
 
+SequencePart part_of(const Pattern& pattern, const std::vector<int>& frames) {
+  const auto all = find_frames(pattern, std::nullopt);
+  if (!all || all->empty() || frames.empty()) return {};
+  const auto [first, last] = std::ranges::minmax(frames);
+  return {std::max(first - all->front().frame, 0), last < all->back().frame ? last + 1 - first : 0};
+}
+
 Result<void> add_files(const FrameListRequest& request, const OutputNames& names, const std::string& input,
                        const std::optional<std::vector<int>>& frames, FrameList& list, Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
@@ -267,6 +275,10 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     list.jobs.push_back(std::move(job));
   }
   if (pattern.numbered && (!frames || request.holds) && held) hold_missing(list.jobs);
+  if (frames && held) {
+    const SequencePart part = part_of(pattern, *frames);
+    for (FrameJob& job : list.jobs) job.part = part;
+  }
   return {};
 }
 

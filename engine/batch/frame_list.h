@@ -18,6 +18,12 @@
 
 namespace afterglow {
 
+/// A part of a sequence, in frames of it.
+struct SequencePart {
+  int before = 0;  ///< that come before it
+  int length = 0;  ///< 0: to the end
+};
+
 struct FrameJob {
   int frame = 1;
   std::filesystem::path input, output;
@@ -31,6 +37,7 @@ struct FrameJob {
   bool passing = false;            ///< from a stream: its pixels go when it is done
   std::optional<Error> refused{};  ///< of a video that cannot be opened: it fails like a picture that cannot be read
   std::size_t missing = 0;         ///< frames before it that are not there; a video holds their places
+  SequencePart part{};             ///< that --frames took, for a video of it alone
   EarlierFiles earlier{};          ///< files of earlier frames that the output depends on
   std::string made_of{};           ///< what is noted behind the output, see resume.h; empty: nothing
 

@@ -135,8 +135,9 @@ class VideoSink : public FrameSink {
     long long shortest = kNone;
     if (job.movie && !job.passing) {
       const auto& pts = job.movie->facts().pts;
+      const Rational& base = job.movie->facts().time_base;
       for (std::size_t i = 1; i < pts.size(); ++i)
-        shortest = std::min(shortest, tick(pts[i], plan.time_base) - tick(pts[i - 1], plan.time_base));
+        shortest = std::min(shortest, tick(pts[i], base) - tick(pts[i - 1], base));
     } else {
       const double rate = static_cast<double>(plan.rate.numerator) / plan.rate.denominator;
       shortest = rate > 100 ? 0 : rate > 50 ? 1 : kNone;

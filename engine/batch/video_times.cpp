@@ -20,6 +20,23 @@ long long length_of_last(const MovieFacts& facts) {
   return std::max(1LL, (pts.back() - pts.front()) / std::max<long long>(1, static_cast<long long>(pts.size()) - 1));
 }
 
+/// Whether whole units of a clock are a frame of this rate.
+bool ticks(const Rational& base, const Rational& rate) {
+  return static_cast<long long>(rate.denominator) * base.denominator %
+             (static_cast<long long>(rate.numerator) * base.numerator) ==
+         0;
+}
+
+/// Of sound that begins with the sequence.
+CopyRange range_of(const SequencePart& part, const Rational& rate) {
+  const auto microseconds = [&](int frames) { return std::llround(frames * 1e6 * rate.denominator / rate.numerator); };
+  CopyRange range;
+  range.shift = microseconds(part.before);
+  if (part.before > 0) range.begin = range.shift;
+  if (part.length > 0) range.end = microseconds(part.before + part.length);
+  return range;
+}
+
 }  // namespace
 
 Error VideoTimes::of_one() const {
@@ -29,15 +46,25 @@ Error VideoTimes::of_one() const {
 void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& plan) {
   plan.rate = first.passing && first.fps > 0 ? frame_rate(first.fps) : rate_;
   plan.time_base = {plan.rate.denominator, plan.rate.numerator};
-  if (!has_times(first)) return;
+  if (!has_times(first)) {
+    plan.audio_range = range_of(first.part, plan.rate);
+    return;
+  }
   movie_ = first.movie;
   if (last.movie == movie_) wanted_ = last.movie_frame;
   const MovieFacts& facts = movie_->facts();
   // Clocks of MPEG streams run from anywhere; those of other containers begin with the shot.
   const bool running = facts.container.starts_with("mpeg");
   if (running || first.movie_frame > 0) start_ = facts.pts[static_cast<std::size_t>(first.movie_frame)];
+  first_ = first.movie_frame;
   plan.time_base = facts.time_base;
   if (facts.rate.numerator > 0) plan.rate = facts.rate;
+  // Matroska rounds to milliseconds, with which every other container would tell of a rate that changes.
+  if (const auto rate = movie_->even_rate(); rate && !ticks(facts.time_base, *rate)) {
+    even_ = true;
+    plan.rate = *rate;
+    plan.time_base = {rate->denominator, rate->numerator};
+  }
   if (!facts.pictures_alone) plan.source = movie_->file();
   const auto microseconds = [&](long long pts) {
     return std::llround(static_cast<double>(pts) * 1e6 * facts.time_base.numerator / facts.time_base.denominator);
@@ -67,6 +94,7 @@ VideoTime VideoTimes::time_of(int frame) {
   const auto at = static_cast<std::size_t>(frame);
   last_ = frame;
   whole_ = at + 1 == pts.size();
+  if (even_) return {frame - first_, 1};
   return {pts[at] - start_, whole_ ? length_of_last(movie_->facts()) : pts[at + 1] - pts[at]};
 }
 

@@ -33,7 +33,9 @@ class VideoTimes {
   std::filesystem::path file_;
   Rational rate_;
   std::shared_ptr<Movie> movie_;  ///< that the frames come from
-  long long start_ = 0;           ///< time stamp of its first frame that is written
+  bool even_ = false;             ///< its frames come evenly, but for the roundings of its clock
+  int first_ = 0;                 ///< its first frame that is written
+  long long start_ = 0;           ///< time stamp of that
   int last_ = -1;                 ///< its frame that was written last
   int wanted_ = -1;               ///< its last frame that was asked for; below 0: not known
   bool begun_ = false, whole_ = true;

@@ -89,11 +89,17 @@ int number_of(const Enumeration& stands) {
 
 Rational rational(AVRational r) { return {r.num, r.den}; }
 
+/// A side that becomes longer; an even one stays even, for codecs that halve colour.
+int lengthened(int side, double ratio) {
+  const int unit = side % 2 == 0 ? 2 : 1;
+  return unit * static_cast<int>(std::lround(side * ratio / unit));
+}
+
 /// Square pixels: the side that has too few is made longer.
 Size square_pixels(const Size& stored, const AVRational& aspect) {
   const double ratio = av_q2d(aspect);
-  if (ratio > 1) return {static_cast<int>(std::lround(stored.width * ratio)), stored.height};
-  return {stored.width, static_cast<int>(std::lround(stored.height / ratio))};
+  if (ratio > 1) return {lengthened(stored.width, ratio), stored.height};
+  return {stored.width, lengthened(stored.height, 1 / ratio)};
 }
 
 void use_aspect(FfmpegInput& input, const AVFrame& first, MovieFacts& facts) {

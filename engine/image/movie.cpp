@@ -13,6 +13,7 @@
 #include "image/movie_color.h"
 #include "image/oiio_module.h"
 #include "image/time_code.h"
+#include "image/video_output.h"
 
 namespace afterglow {
 
@@ -87,17 +88,19 @@ class MovieFrameFile : public PictureFile {
   }
 
  private:
-  /// A time code and the rate that it counts by; by the frame's time, as numbers of frames tell nothing where the rate
-  /// changes.
+  /// A time code and the rate that it counts by, or the rate alone where frames come evenly; by the frame's time, as
+  /// numbers of frames tell nothing where the rate changes.
   Metadata metadata() const {
     const MovieFacts& movie = movie_->facts();
     const auto at = static_cast<std::size_t>(frame_);
-    if (movie.time_code.empty() || movie.rate.denominator <= 0 || at >= movie.pts.size()) return {};
+    Metadata rate;
+    if (const auto even = movie_->even_rate()) rate.push_back({"FramesPerSecond", *even});
+    if (movie.time_code.empty() || movie.rate.denominator <= 0 || at >= movie.pts.size()) return rate;
     const double seconds = static_cast<double>(movie.pts[at] - movie.pts.front()) * movie.time_base.numerator /
                            movie.time_base.denominator;
     const auto frames = std::llround(seconds * movie.rate.numerator / movie.rate.denominator);
     std::string code = time_code_after(movie.time_code, frames, movie.rate);
-    if (code.empty()) return {};
+    if (code.empty()) return rate;
     return {{kTimeCodeName, std::move(code)}, {"FramesPerSecond", movie.rate}};
   }
   Result<void> read_into(float* rgba, std::size_t row) {
@@ -148,6 +151,20 @@ Result<std::shared_ptr<MovieSource>> open_source(const MovieRequest& request) {
   return module ? (*module)->open(request) : Error{ErrorKind::io, module.error().message, name};
 }
 
+std::optional<Rational> even_rate_of(const MovieFacts& of, double fps) {
+  if (of.pts.size() < 2 || of.rate.numerator <= 0 || of.rate.denominator <= 0 || of.time_base.denominator <= 0)
+    return std::nullopt;
+  const double tick = static_cast<double>(of.time_base.numerator) / of.time_base.denominator;
+  for (const Rational rate : {frame_rate(fps), of.rate}) {
+    const double step = static_cast<double>(rate.denominator) / rate.numerator / tick;
+    bool even = step >= 2;
+    for (std::size_t i = 1; even && i < of.pts.size(); ++i)
+      even = std::abs(static_cast<double>(of.pts[i] - of.pts.front()) - static_cast<double>(i) * step) <= 1.001;
+    if (even) return rate;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, const SizeLimits& limits,
@@ -162,6 +179,7 @@ Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, co
     if (container)  // one that is cut off is told of, and taken for sRGB
       movie->container_ = std::make_shared<const ContainerFacts>(*std::move(container));
   }
+  movie->even_rate_ = even_rate_of(movie->facts(), movie->fps());
   tell(*movie, diagnostics);
   return movie;
 }

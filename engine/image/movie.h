@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/diagnostics.h"
@@ -39,6 +40,8 @@ class Movie {
   double fps() const;  ///< frames a second, on the average; 0: the file does not say
   /// Frames do not come at one rate.
   bool variable_rate() const;
+  /// The rate at which they come, where that is one but for roundings of the stamps; none of a stream.
+  std::optional<Rational> even_rate() const { return even_rate_; }
   /// When the frame shows, in seconds from the first one.
   double time(int frame) const;
   /// The frame as a picture file, for the reader; it keeps the movie open.
@@ -48,6 +51,7 @@ class Movie {
   Movie() = default;
   std::filesystem::path file_;
   std::shared_ptr<MovieSource> source_;
+  std::optional<Rational> even_rate_;
   std::shared_ptr<const ContainerFacts> container_;  ///< of a PNG or WebP that moves: no decoder tells its colours
   friend class MovieFrameFile;
 };

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <cstring>
 #include <fstream>
 
 #include "clips.h"
@@ -188,6 +190,54 @@ TEST_F(RunVideos, SoundOfAnotherFileBeginsWithThePictures) {
   EXPECT_NEAR(std::stod(only_digits(probed("stream=duration", "part.mov", "a:0"))), 1, 0.03);
 }
 
+/// Milliseconds of Matroska are no rate that changes, and stills of a video say its rate.
+TEST_F(RunVideos, RoundedTimesOfAnEvenVideoAreEvenAgain) {
+  ffmpeg(fmt::format("-f lavfi -i testsrc=s=64x36:r=30000/1001:d=1.5 -c:v ffv1 \"{}\"", path("a.mkv")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua a.mkv -o a.mov --codec prores"), 0) << said_;
+  EXPECT_EQ(probed("stream=avg_frame_rate,time_base", "a.mov"), "30000/1001,1/30000");
+  ASSERT_EQ(shell("AFTERGLOW run look.lua a.mkv -o part.mov --codec prores --frames 11-20"), 0) << said_;
+  EXPECT_EQ(probed("stream=avg_frame_rate,duration_ts", "part.mov"), "30000/1001,10010");
+  for (const std::string format : {"exr", "png"}) {
+    ASSERT_EQ(shell("AFTERGLOW run look.lua a.mkv -o still_####." + format + " --frames 11-20"), 0) << said_;
+    ASSERT_EQ(shell("AFTERGLOW run look.lua still_####." + format + " -o " + format + ".mov --codec prores"), 0)
+        << said_;
+    EXPECT_EQ(probed("stream=avg_frame_rate", format + ".mov"), "30000/1001");
+  }
+  ffmpeg(fmt::format("-i \"{}\" -vf \"select=not(eq(n\\,7))\" -fps_mode passthrough -c:v ffv1 \"{}\"", path("a.mkv"),
+                     path("hole.mkv")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua hole.mkv -o hole.mov --codec prores"), 0) << said_;
+  EXPECT_NE(probed("stream=avg_frame_rate", "hole.mov"), "30000/1001");
+}
+
+/// Sound that was made for a sequence begins with its first frame, not with the first that is taken.
+TEST_F(RunVideos, APartOfASequenceHasTheSoundOfThatPart) {
+  clip("a.mp4", kCodec, 48);
+  ffmpeg(fmt::format("-i \"{}\" -start_number 1001 \"{}\"", path("a.mp4"), path("shot.%04d.png")));
+  ffmpeg(fmt::format("-f lavfi -i \"aevalsrc=if(lt(t\\,1)\\,0\\,0.5):s=48000:d=2.5\" -c:a pcm_s16le \"{}\"",
+                     path("late.wav")));
+  const auto sound_of = [&](const std::string& frames) {
+    EXPECT_EQ(
+        shell("AFTERGLOW run look.lua shot.####.png -o part.mov --codec prores --fps 24 --audio late.wav" + frames), 0)
+        << said_;
+    ffmpeg(fmt::format("-i \"{}\" -ac 1 -f s16le \"{}\"", path("part.mov"), path("part.raw")));
+    const std::string bytes = read_file(path("part.raw")).value();
+    std::vector<std::int16_t> samples(bytes.size() / 2);
+    std::memcpy(samples.data(), bytes.data(), samples.size() * 2);
+    const auto loud = std::ranges::find_if(samples, [](std::int16_t v) { return v > 8000; });
+    // Seconds before it is loud, and all.
+    return std::pair(static_cast<double>(loud - samples.begin()) / 48000, static_cast<double>(samples.size()) / 48000);
+  };
+  const auto expect = [&](const std::string& frames, double quiet, double all) {
+    const auto [before, length] = sound_of(frames);
+    EXPECT_NEAR(before, quiet, 0.05) << frames;
+    EXPECT_NEAR(length, all, 0.05) << frames;
+  };
+  expect("", 1, 2.5);
+  expect(" --frames 1013-1036", 0.5, 1);
+  expect(" --frames 1030-1040", 0, 11.0 / 24);
+  expect(" --frames 1025-1048", 0, 1.5);  // to the end of both
+}
+
 /// Chapters and subtitles end with the part; a subtitle that shows where it begins shows from there on.
 TEST_F(RunVideos, APartKeepsWhatBelongsToIt) {
   std::ofstream(path("texts.srt")) << "1\n00:00:00,500 --> 00:00:01,500\nfirst\n\n2\n00:00:01,600 --> 00:00:01,900\n"
@@ -245,9 +295,11 @@ TEST_F(RunVideos, FramesComeThroughPipes) {
     EXPECT_FALSE(std::filesystem::exists(path(fmt::format("{}.0008.png", pipe.name))));
   }
   // Without loss they are the pixels of the file.
-  for (const char* name : {"nut", "ppm"})
-    EXPECT_TRUE(read_file(path(fmt::format("{}.0004.png", name))).value() == read_file(path("file.0004.png")).value())
-        << name;
+  const auto pixels_of = [&](const std::string& name) {
+    ffmpeg(fmt::format("-i \"{}\" -f rawvideo \"{}\"", path(name + ".0004.png"), path("pixels")));
+    return read_file(path("pixels")).value();
+  };
+  for (const char* name : {"nut", "ppm"}) EXPECT_TRUE(pixels_of(name) == pixels_of("file")) << name;
 }
 
 /// PFM holds light; one picture may come too, of any format.
