@@ -137,10 +137,11 @@ DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples
     });
   };
   if (length <= 2) return streaks(1);
-  const double share = glm::clamp((length - 400) / 200, 0.0, 1.0);
-  const DoubleImage fine = streaks(2);
-  if (share == 0) return fine;
-  const DoubleImage coarse = streaks(4);
+  const bool long_ones = length > 400;
+  const double share = glm::min(long_ones ? (length - 400) / 200 : (length - 2) / 2, 1.0);
+  const DoubleImage coarse = streaks(long_ones ? 4 : 2);
+  if (share == 1) return coarse;
+  const DoubleImage fine = streaks(long_ones ? 2 : 1);
   return generate(source.size(), [&](int x, int y) { return glm::mix(fine.at(x, y), coarse.at(x, y), share); });
 }
 
@@ -153,8 +154,8 @@ DoubleImage directional_blur(const DoubleImage& source, double distance, double 
   int n = 1;
   if (length > 35)
     while (n * (n + 2) < length) n += 2;
-  const DoubleImage near = resample(source, source.size(), mean_of_line(length / n, step));
-  return with_alpha_of(source, n == 1 ? near : resample(near, source.size(), pieces(n, length / n, step)));
+  const DoubleImage far = n == 1 ? source : resample(source, source.size(), pieces(n, length / n, step));
+  return with_alpha_of(source, resample(far, source.size(), mean_of_line(length / n, step)));
 }
 
 }  // namespace afterglow::reference

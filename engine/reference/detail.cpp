@@ -73,8 +73,8 @@ DoubleImage edge_detection(const DoubleImage& source, const EdgeDetection& s) {
     }
     const double line = saturate((std::hypot(gx, gy) - s.threshold) * s.intensity);
     const Rgba& p = source.at(x, y);
-    const Rgb below = Rgb(p) + s.background_opacity * (s.background - Rgb(p));
-    return Rgba(below + line * (s.color - below), p.a);
+    const Rgb below = Rgb(p) + s.background_opacity * (s.background * p.a - Rgb(p));
+    return Rgba(below + line * (s.color * p.a - below), p.a);
   });
 }
 

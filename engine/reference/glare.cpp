@@ -30,10 +30,10 @@ double grains(double x, double y, const LensDirt& s, std::uint32_t number) {
   for (int j = home_y - 1; j <= home_y + 1; ++j)
     for (int i = home_x - 1; i <= home_x + 1; ++i) {
       const Words place = words_of(i, j, s, number), kind = pcg3d(place);
-      if (unit(place[2]) >= s.density) continue;
       const double radius = 0.08 + 0.42 * unit(kind[0]) * unit(kind[0]);
       const double inside = 1 - std::hypot(x - i - unit(place[0]), y - j - unit(place[1])) / radius;
-      const double opacity = 0.05 + 0.95 * std::pow(unit(kind[2]), 3);
+      const double there = glm::clamp((s.density - unit(place[2])) / 0.05, 0.0, 1.0);
+      const double opacity = there * (0.05 + 0.95 * std::pow(unit(kind[2]), 3));
       sum += opacity * glm::clamp(inside / (0.2 + 0.6 * unit(kind[1])), 0.0, 1.0) *
              (1 - 0.5 * glm::clamp(inside * 2.5, 0.0, 1.0));
     }

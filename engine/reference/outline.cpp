@@ -109,7 +109,8 @@ DoubleImage outline(const DoubleImage& source, const DoubleImage* depth, const D
     const double m = mask.at(x, y).r;
     const Rgba& p = source.at(x, y);
     const Rgb c(p);
-    return Rgba(settings.blend == OutlineBlend::lerp ? c + m * (settings.color - c) : c + m * settings.color, p.a);
+    return Rgba(
+        settings.blend == OutlineBlend::lerp ? c + m * (settings.color * p.a - c) : c + m * settings.color * p.a, p.a);
   });
 }
 

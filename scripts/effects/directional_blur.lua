@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: MIT
 -- Directional blur: a camera that moves while the shutter is open. The mean of the picture along a line, read once for each column that it
 -- crosses (each row, where it is steep) and interpolated between them: weights are integrals, so that no length differs from the next by more
--- than lengths do. A long line is n pieces laid end to end: the picture blurred along one of them, read n times, so that a hundred reads do for
--- a thousand pixels.
+-- than lengths do. A long line is n pieces laid end to end: the mean of n reads, a piece apart, blurred along a piece, so that a hundred reads do
+-- for a thousand pixels.
 local fx = require "afterglow"
 
 local kWhole = 35  -- columns up to which one pass reads all
@@ -54,8 +54,10 @@ return fx.effect {
     local length = math.min(s.distance * across, kLongest)
     -- An odd number, the next wherever both divide the length into whole columns, and so give the same: 63 is 7·9 and 9·7.
     local n = length > kWhole and 2 * math.ceil((math.sqrt(1 + length) - 2) / 2) + 1 or 1
-    local image = g:filter { source = source, filter = mean(length / n, x, y), name = "near" }
+    -- The far ones first: what lies beyond the picture is then its own last pixel, not a blurred one, but for half a piece.
+    local image = source
     if n > 1 then image = g:filter { source = image, filter = pieces(n, length / n, x, y), name = "far" } end
+    image = g:filter { source = image, filter = mean(length / n, x, y), name = "near" }
     return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture
   end,
 }

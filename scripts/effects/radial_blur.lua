@@ -4,8 +4,8 @@
 -- made in a smaller picture; around the centre, where they are short, the sharp one stands. math.md §37.
 local fx = require "afterglow"
 
-local kFine = 400  -- pixels: streaks up to this are made in a picture of half the size, longer ones in one of a quarter
-local kBoth = 200  -- and in both for so many pixels more
+-- Streaks that are longer, in pixels, are made in a picture so many times smaller; until `whole` in the one before it too, as a zoom that moves would jump.
+local kWays = { { from = 0, whole = 0, side = 1 }, { from = 2, whole = 4, side = 2 }, { from = 400, whole = 600, side = 4 } }
 
 return fx.effect {
   name = "radial_blur",
@@ -27,7 +27,7 @@ return fx.effect {
     local length = math.sqrt(across * across + down * down) * -math.log(1 - amount)
     -- Of the picture that is delivered: a preview is small as it is.
     local whole = length / g.length_scale
-    local function side(pixels) return whole > 2 and math.max(1, math.min(4, math.floor(pixels * g.length_scale + 0.5))) or 1 end
+    local function side(way) return way.side > 1 and math.max(1, math.floor(way.side * g.length_scale + 0.5)) or 1 end
 
     -- Streaks of a picture that is `factor` times smaller.
     local function streaks(factor, tag)
@@ -49,10 +49,11 @@ return fx.effect {
                       amount = amount, factor = factor, name = "final" .. tag }
     end
 
-    -- Longer ones are made in a smaller picture. Both, where one gives way to the other: a zoom that moves would jump.
-    local fine, coarse, share = side(2), side(4), math.max(0, math.min((whole - kFine) / kBoth, 1))
-    if share == 0 or fine == coarse then return streaks(fine, "") end
-    if share == 1 then return streaks(coarse, "") end
+    local n = 1
+    while kWays[n + 1] and whole > kWays[n + 1].from do n = n + 1 end
+    local way, before = kWays[n], kWays[math.max(n - 1, 1)]
+    local fine, coarse, share = side(before), side(way), (whole - way.from) / (way.whole - way.from)
+    if share >= 1 or fine == coarse then return streaks(coarse, "") end
     return g:pass { shader = "bloom/scatter", source = streaks(coarse, "_coarse"), high = streaks(fine, ""), amount = share, name = "mix" }
   end,
 }

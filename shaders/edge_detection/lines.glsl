@@ -30,5 +30,5 @@ vec2 gradient(ivec2 pixel) {
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(source, pixel);
   float line = clamp((length(gradient(pixel)) - threshold) * intensity * finer, 0.0, finer);
-  return vec4(lerp(lerp(color.rgb, paper, opacity), ink, line), color.a);
+  return vec4(lerp(lerp(color.rgb, paper * color.a, opacity), ink * color.a, line), color.a);
 }

@@ -16,10 +16,9 @@ float grains(vec2 centre, vec2 side, uint number) {
     ivec2 at = home + ivec2(i % 3, i / 3) - 1;
     uvec3 words = words_of(at, number);
     vec3 place = unit_of(words), kind = unit_of(pcg3d(words));
-    if (place.z >= density) continue;
     float radius = 0.08 + 0.42 * kind.x * kind.x;  // of the cell's side
     float inside = 1.0 - length(place_in_cell(centre, at, side) - place.xy) / radius;  // 0 at the rim, 1 in the middle
-    float opacity = 0.05 + 0.95 * kind.z * kind.z * kind.z;
+    float opacity = (0.05 + 0.95 * kind.z * kind.z * kind.z) * clamp((density - place.z) * 20.0, 0.0, 1.0);  // it comes bit by bit
     sum += opacity * clamp(inside / (0.2 + 0.6 * kind.y), 0.0, 1.0) * (1.0 - 0.5 * clamp(inside * 2.5, 0.0, 1.0));
   }
   return sum;

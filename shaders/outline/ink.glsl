@@ -6,6 +6,6 @@ layout(constant_id = 0) const bool add_light = false;  // picture + strength · 
 uniform vec3 ink;
 
 vec4 apply(vec4 line, vec4 picture) {
-  vec3 c = add_light ? min(picture.rgb + line.r * ink, kMaxLight) : lerp(picture.rgb, ink, line.r);
+  vec3 c = add_light ? min(picture.rgb + line.r * picture.a * ink, kMaxLight) : lerp(picture.rgb, ink * picture.a, line.r);
   return vec4(c, picture.a);
 }

@@ -220,6 +220,35 @@ TEST_F(Effects, EmptyPartsOfALayerDoNotDependOnHowPassesAreJoined) {
   for (std::size_t i = 0; i < one.pixels.size(); i += 6) EXPECT_EQ(one.pixels[i], Rgba(0)) << i;
 }
 
+/// Colours of a setting that are laid over a picture are as opaque as it is.
+TEST_F(Effects, WhatIsLaidOverIsAsOpaqueAsThePicture) {
+  Scene scene{"layer", DoubleImage(16, 12), DoubleImage(16, 12, Rgba(10, 0, 0, 1)), {}};
+  Scene opaque = scene;
+  for (int y = 0; y < 12; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const double a = glm::clamp((x - 3) / 8.0, 0.0, 1.0);
+      scene.source.at(x, y) = Rgba(0, 0, 0, a);
+      opaque.source.at(x, y) = Rgba(0, 0, 0, 1);
+      if (y > 5) scene.depth->at(x, y).r = 2;
+    }
+  opaque.depth = scene.depth;
+  for (const std::string entries :
+       {"fx.letterbox { aspect = 4, color = { 1, 0.5, 2 } }",
+        "fx.edge_detection { background_opacity = 0.75, background = { 1, 0.5, 0.2 }, threshold = 1 }",
+        "fx.outline { source = \"depth\", color = { 1, 0.5, 0.2 } }",
+        "fx.outline { source = \"depth\", color = { 1, 0.5, 0.2 }, blend = \"add\" }"}) {
+    const Made layer = run_stack(entries, scene, Way::fused), whole = run_stack(entries, opaque, Way::fused);
+    double lit = 0;
+    for (std::size_t i = 0; i < scene.source.pixels.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        lit += whole.result[4 * i + c];
+        EXPECT_NEAR(layer.result[4 * i + c], whole.result[4 * i + c] * scene.source.pixels[i].a, 1e-6) << entries << i;
+      }
+    EXPECT_GT(lit, 5) << entries;
+    EXPECT_TRUE(alpha_is_kept(layer, scene)) << entries;
+  }
+}
+
 /// A disc with a soft edge that glows: where its alpha ends a tone curve leaves a ring, but not where it takes colours
 /// as they are.
 TEST_F(Effects, AssociatedColoursLeaveNoRingAroundWhatGlows) {

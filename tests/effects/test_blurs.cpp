@@ -69,6 +69,21 @@ TEST_F(Effects, RadialBlurAgrees) {
   expect_skipped("fx.radial_blur { intensity = 0 }", "intensity is 0");
 }
 
+TEST_F(Effects, RadialBlurGrowsWithoutJumps) {
+  const Scene scene = random_scene({64, 36}, 5);
+  const auto streaked = [&](double length) {
+    const double intensity = 1 - std::exp(-length / std::hypot(32, 18));
+    return run_stack(zoomed(intensity, 8, {0.5, 0.5}).entries, scene, Way::plain).result;
+  };
+  std::vector<float> before = streaked(1.9);
+  for (double length = 1.95; length < 4.3; length += 0.05) {
+    const std::vector<float> now = streaked(length);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      ASSERT_NEAR(now[i], before[i], 0.09 * std::max(before[i], 1.0F)) << length << ' ' << i / 4;
+    before = now;
+  }
+}
+
 /// Wherever it is: halves of odd sizes would read some texels twice and others not.
 TEST_F(Effects, DualKawaseKeepsTheLightOfAPoint) {
   for (const Size size : {Size{301, 301}, Size{250, 125}, Size{256, 128}})
@@ -113,6 +128,23 @@ TEST_F(Effects, DirectionalBlurIsTheMeanAlongItsLine) {
         EXPECT_NEAR(made[4 * static_cast<std::size_t>(61 * 15 + x) + static_cast<std::size_t>(c)], sum[c] / kReads,
                     1e-5 * (1 + sum[c] / kReads))
             << distance << ' ' << x;
+    }
+  }
+}
+
+/// Beyond the picture lies its last pixel, however many pieces a line is laid of.
+TEST_F(Effects, DirectionalBlurAtTheBordersIsTheMeanToo) {
+  const Scene scene{
+      "border", generate({120, 6}, [](int x, int) { return Rgba(Rgb(x < 2 || x == 119 ? 1 : 0), 1); }), {}, {}};
+  for (const double distance : {34.9, 35.1, 40.0, 62.9, 63.1, 80.0, 99.1}) {
+    const auto made =
+        run_stack(fmt::format("fx.directional_blur {{ distance = {} }}", distance), scene, Way::plain).result;
+    constexpr int kReads = 4000;
+    for (const int x : {0, 1, 2, 5, 12, 110, 117, 119}) {
+      double sum = 0;
+      for (int i = 0; i < kReads; ++i)
+        sum += sample_linear(scene.source, x + 0.5 + distance * ((i + 0.5) / kReads - 0.5), 3.5).r;
+      EXPECT_NEAR(made[4 * static_cast<std::size_t>(120 * 3 + x)], sum / kReads, 0.012) << distance << ' ' << x;
     }
   }
 }

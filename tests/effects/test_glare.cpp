@@ -48,6 +48,19 @@ TEST_F(Effects, LensDirtAgrees) {
   expect_skipped("fx.lens_dirt { density = 0 }", "density is 0");
 }
 
+TEST_F(Effects, DirtComesBitByBit) {
+  const Scene scene{"bright", DoubleImage(120, 80, Rgba(2, 2, 2, 1)), {}, {}};
+  const auto made = [&](double density) {
+    return run_stack(dirty({.intensity = 1, .threshold = 0.2, .density = density}).entries, scene, Way::plain).result;
+  };
+  std::vector<float> before = made(0.2);
+  for (double density = 0.202; density < 0.4; density += 0.002) {
+    const std::vector<float> now = made(density);
+    for (std::size_t i = 0; i < now.size(); ++i) ASSERT_NEAR(now[i], before[i], 0.12) << density << ' ' << i / 4;
+    before = now;
+  }
+}
+
 TEST_F(Effects, LensDirtNeedsLight) {
   const Scene scene{"dim", DoubleImage(64, 64, Rgba(0.5, 0.75, 0.25, 1)), {}, {}};
   EXPECT_TRUE(agrees(run_stack("fx.lens_dirt { intensity = 50 }", scene, Way::plain).result, scene.source, 0, kRgba));
