@@ -135,6 +135,7 @@ class VideoBytes : public FrameBytes {
     constexpr int kSmallWidth = 1024, kSmallHeight = 576;
     rules_.luma = size_.width <= kSmallWidth && size_.height <= kSmallHeight ? kBt601Luma : plan.pack.luma;
     rules_.dither = options_.dither.value_or(layout->bits == 8);
+    rules_.beyond = plan.pack.beyond;
     return y4m_ ? header(*layout) : std::string();
   }
 

@@ -44,10 +44,11 @@ std::optional<std::array<double, 3>> camera_position(const Metadata& metadata);
 /// What is remembered of a picture's file for the writer.
 struct FileFacts {
   std::filesystem::path file;
-  std::string format;        ///< OpenImageIO's name of it: "openexr", "png", …
-  int bits = 8;              ///< of a colour sample
-  bool floating = false;     ///< half or float samples
-  bool had_profile = false;  ///< an ICC profile was embedded
+  std::string format;           ///< OpenImageIO's name of it: "openexr", "png", …
+  int bits = 8;                 ///< of a colour sample
+  bool floating = false;        ///< half or float samples
+  bool keeps_negative = false;  ///< ReadOptions::keep_negative
+  bool had_profile = false;     ///< an ICC profile was embedded
   bool had_chromaticities = false;
   /// Of the file where layers come from that this one has not; empty: there is none.
   std::filesystem::path mattes;

@@ -23,6 +23,7 @@ constexpr int kMantissaBits = 7, kShift = 23 - kMantissaBits;  // parts of an oc
 constexpr float kSmallest = 0x1p-40f, kLargest = 0x1p10f;      // the brightest that a space holds is below
 constexpr std::uint32_t kMask = (1u << kShift) - 1;
 constexpr int kStepsBelow = 4096;  // of light below 0, where codes stand for such
+constexpr int kStepsWide = 1 << 14;
 
 std::uint32_t part_of(float light) { return std::bit_cast<std::uint32_t>(light) >> kShift; }
 
@@ -44,7 +45,11 @@ double inverse_of(double (*to_linear)(double), double light) {
 }  // namespace
 
 OutputSpace::OutputSpace(const InputSpace& space)
-    : name_(space.name), of_display_(space.of_display), linear_(space.linear()), primaries_(space.primaries) {
+    : name_(space.name),
+      of_display_(space.of_display),
+      linear_(space.linear()),
+      primaries_(space.primaries),
+      to_linear_(space.to_linear) {
   of_zero_ = static_cast<float>(inverse_of(space.to_linear, 0));
   for (std::uint32_t part = part_of(kSmallest); part <= part_of(kLargest); ++part)
     table_.push_back(
@@ -145,6 +150,41 @@ void OutputSpace::encode(const float* rgba, std::size_t pixels, float* stored) c
     if (matrix_) multiply(*matrix_, pixel.data(), pixel.data());
     for (std::size_t c = 0; c < 3; ++c) stored[c] = stored_value(pixel[c]);
     stored[3] = pixel[3];
+  }
+}
+
+const std::vector<double>& OutputSpace::wide() const {
+  std::call_once(wide_made_, [&] {
+    constexpr double kStep = 1.0 / kStepsWide;
+    std::vector<double> below;
+    double light = to_linear_(0);
+    for (int i = 1; i <= 2 * kStepsWide && to_linear_(-i * kStep) < light; ++i)
+      below.push_back(light = to_linear_(-i * kStep));
+    wide_.assign(below.rbegin(), below.rend());
+    wide_from_ = -static_cast<double>(below.size()) * kStep;
+    for (int i = 0; i <= 3 * kStepsWide && (wide_.empty() || to_linear_(i * kStep) > wide_.back()); ++i)
+      wide_.push_back(to_linear_(i * kStep));
+  });
+  return wide_;
+}
+
+float OutputSpace::beyond(float light) const {
+  const auto& lights = wide();
+  const auto above = std::upper_bound(lights.begin(), lights.end(), static_cast<double>(light));
+  if (above == lights.begin()) return static_cast<float>(wide_from_);
+  const auto step = static_cast<double>(above - lights.begin() - 1);
+  const double part = above == lights.end() ? 0 : (static_cast<double>(light) - above[-1]) / (above[0] - above[-1]);
+  return static_cast<float>(wide_from_ + (step + part) / kStepsWide);
+}
+
+void OutputSpace::encode_beyond(const float* rgba, std::size_t pixels, float* stored) const {
+  encode(rgba, pixels, stored);
+  const auto white = static_cast<float>(to_linear_(1));
+  for (std::size_t i = 0; i < pixels * 4; i += 4) {
+    std::array<float, 3> light{rgba[i], rgba[i + 1], rgba[i + 2]};
+    if (matrix_) multiply(*matrix_, light.data(), light.data());
+    for (std::size_t c = 0; c < 3; ++c)
+      if (light[c] < darkest_ || light[c] > white) stored[i + c] = beyond(light[c]);
   }
 }
 

@@ -27,7 +27,10 @@ class OutputSpace {
   /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
   /// is held at its ends, which may lie below 0, NaN at that of 0. `stored` may be `rgba` itself.
   void encode(const float* rgba, std::size_t pixels, float* stored) const;
-  /// The same colours, bit for bit, of half floats; what stands at the place of alpha has no meaning.
+  /// The same, but light beyond the ends keeps stored values below 0 and above 1, −2…3 at the most, as readers of YUV
+  /// take them. `stored` is not `rgba`.
+  void encode_beyond(const float* rgba, std::size_t pixels, float* stored) const;
+  /// Colours as of `encode`, bit for bit, of half floats; what stands at the place of alpha has no meaning.
   void encode_colors(const std::uint16_t* rgba, std::size_t pixels, float* stored) const;
 
  private:
@@ -35,6 +38,7 @@ class OutputSpace {
   float stored_value(float light) const;
   float stored_below(float light) const;
   std::size_t encode_pairs(const float* rgba, std::size_t pixels, float* stored) const;
+  float beyond(float light) const;
 
   const char* name_;
   bool of_display_, linear_;
@@ -45,6 +49,13 @@ class OutputSpace {
   /// Logarithms of film and cameras have codes for light below 0: what those from `darkest_` to 0 are stored as.
   float darkest_ = 0;
   std::vector<float> below_;
+  /// What stored values from −2 to 3 mean, in equal steps, as far as the curve rises there. Made when it is first asked
+  /// for.
+  const std::vector<double>& wide() const;
+  double (*to_linear_)(double);
+  mutable std::once_flag wide_made_;
+  mutable std::vector<double> wide_;
+  mutable double wide_from_ = 0;
   /// Stored values of all half floats, by their bits. Made when they are first asked for.
   const std::vector<float>& of_halves() const;
   mutable std::once_flag halves_made_;

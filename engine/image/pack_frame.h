@@ -22,6 +22,7 @@ struct PackRules {
   const OutputSpace* space = nullptr;  ///< never null
   LumaWeights luma;                    ///< of yuv
   bool dither = false;                 ///< blue noise between two codes; else the nearest
+  bool beyond = false;                 ///< YUV keeps what its codes have room for below black and above white
 };
 
 /// The display window. RGB is of full range, YUV of limited range (ITU-R BT.709, 4.6), alpha straight and of full

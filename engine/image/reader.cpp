@@ -195,7 +195,7 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
     if (space->linear() && encoding.matrix) facts->primaries = space->primaries;
   }
   encoding.data = options.raw;
-  encoding.keep_negative = options.keep_negative.value_or(false);
+  encoding.keep_negative = facts->keeps_negative = options.keep_negative.value_or(false);
 
   AFTERGLOW_TRY(const bool done, read_halves(plan, encoding, options, picture));
   if (done) {

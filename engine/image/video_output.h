@@ -64,7 +64,8 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
 /// The space of a video's codes: what was asked for; sRGB of RGB and of a view's codes (Picture::view), else BT.709.
 const OutputSpace* video_space(const WriteOptions& options, const PixelLayout& layout, bool view);
 
-/// What a video keeps of the file of its first picture: the time code, the shape of a pixel.
+/// What a video keeps of the file of its first picture: the time code, the shape of a pixel, whether light beyond black
+/// and white stays.
 /// `held`: places before it that it holds, too.
 void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held = 0);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <random>
 
 #include "clips.h"
 #include "core/file.h"
@@ -207,6 +208,29 @@ TEST_F(RunVideos, RoundedTimesOfAnEvenVideoAreEvenAgain) {
                      path("hole.mkv")));
   ASSERT_EQ(shell("AFTERGLOW run look.lua hole.mkv -o hole.mov --codec prores"), 0) << said_;
   EXPECT_NE(probed("stream=avg_frame_rate", "hole.mov"), "30000/1001");
+}
+
+/// YUV has codes that are no colour of RGB; `--gamut keep` brings them all back, also below black and above white.
+TEST_F(RunVideos, CodesBeyondBlackAndWhiteCanStay) {
+  for (const std::string pixels : {"yuv444p", "yuv444p10le"}) {
+    std::string raw(static_cast<std::size_t>(64) * 64 * 3 * (pixels == "yuv444p" ? 1 : 2), '\0');
+    std::mt19937 random(4);
+    for (std::size_t i = 0; i < raw.size(); ++i)
+      raw[i] = static_cast<char>(random() % (pixels == "yuv444p" ? 256 : i % 2 == 0 ? 256 : 4));
+    std::ofstream(path("in.raw"), std::ios::binary) << raw;
+    ffmpeg(
+        fmt::format("-f rawvideo -pix_fmt {} -s 64x64 -i \"{}\" -color_range tv -colorspace bt709 -color_trc bt709 "
+                    "-color_primaries bt709 -c:v ffv1 \"{}\"",
+                    pixels, path("in.raw"), path("in.mkv")));
+    const auto written = [&](const std::string& options) {
+      EXPECT_EQ(shell("AFTERGLOW run look.lua in.mkv -o out.mkv --codec ffv1 --pix-fmt " + pixels + options), 0)
+          << said_;
+      ffmpeg(fmt::format("-i \"{}\" -f rawvideo -pix_fmt {} \"{}\"", path("out.mkv"), pixels, path("out.raw")));
+      return read_file(path("out.raw")).value();
+    };
+    EXPECT_TRUE(written(" --dither none --gamut keep") == raw) << pixels;
+    EXPECT_FALSE(written(" --dither none") == raw) << pixels;
+  }
 }
 
 /// Sound that was made for a sequence begins with its first frame, not with the first that is taken.
