@@ -14,6 +14,7 @@ extern "C" {
 #include <cstdint>
 #include <cstring>
 #include <new>
+#include <span>
 #include <vector>
 
 namespace afterglow {
@@ -178,7 +179,7 @@ class Planes {
     std::memset(bytes.get(), 0, size);
     const bool palette = (layout.format->flags & AV_PIX_FMT_FLAG_PAL) != 0;
     const std::uint8_t* from[4] = {frame.data[0], frame.data[1], frame.data[2], frame.data[3]};
-    const int depth = palette ? 8 : layout.format->comp[component].depth;
+    const int depth = layout.format->comp[component].depth;
     for (int y = 0; y < there.height; ++y) {
       std::byte* to = bytes.get() + row * static_cast<std::size_t>(y);
       if (layout.as_it_is) {
@@ -187,14 +188,30 @@ class Planes {
                     static_cast<std::size_t>(width) * static_cast<std::size_t>(layout.bytes));
         continue;
       }
-      av_read_image_line2(to, from, frame.linesize, layout.format, 0, y, component, width, palette,
-                          layout.floating ? 4 : 2);
+      if (palette) {
+        look_up(frame, y, component, {reinterpret_cast<std::uint16_t*>(to), static_cast<std::size_t>(width)});
+        continue;
+      }
+      av_read_image_line2(to, from, frame.linesize, layout.format, 0, y, component, width, 0, layout.floating ? 4 : 2);
       if (depth != layout.depth) widen(reinterpret_cast<std::uint16_t*>(to), width, depth, layout.depth);
     }
     const auto index = static_cast<std::size_t>(plane);
     data_[index] = bytes.get();
     stride_[index] = static_cast<std::ptrdiff_t>(row);
     kept_[index] = std::move(bytes);
+  }
+
+  /// One component (red, green, blue, alpha) of a row of codes: a palette's colours are words of A, R, G, B, the
+  /// highest byte first.
+  static void look_up(const AVFrame& frame, int y, int component, std::span<std::uint16_t> to) {
+    constexpr std::array<unsigned, 4> kShift{16, 8, 0, 24};
+    const std::uint8_t* codes = frame.data[0] + static_cast<std::ptrdiff_t>(y) * frame.linesize[0];
+    const unsigned shift = kShift[static_cast<std::size_t>(component)];
+    for (std::size_t x = 0; x < to.size(); ++x) {
+      std::uint32_t color = 0;
+      std::memcpy(&color, frame.data[1] + std::size_t{4} * codes[x], sizeof color);
+      to[x] = static_cast<std::uint16_t>(color >> shift & 255);
+    }
   }
 
   static void widen(std::uint16_t* samples, int count, int depth, int wanted) {

@@ -233,6 +233,30 @@ TEST_F(Clips, AlphaIsMultipliedInLight) {
   EXPECT_NEAR(picture.color.at(x, y)[0], alpha * std::pow((stored + 0.055) / 1.055, 2.4), 1e-5);
 }
 
+/// Codes of a palette are that palette's colours, and its alpha: as in a still picture of the same codes.
+TEST_F(Clips, PalettesAreLookedUp) {
+  const auto palette = [&](const char* name, const char* codec) {
+    return clip(name, fmt::format("-filter_complex '[0]split[a][b];[a]palettegen[p];[b][p]paletteuse' {}", codec), 2,
+                true);
+  };
+  Diagnostics quiet;
+  const auto still = read_picture(palette("still.png", "-frames:v 1 -update 1"), {}, quiet);
+  ASSERT_TRUE(still) << still.error().text();
+  for (const auto& [name, codec] : {std::pair("png.mov", "-c:v png"), std::pair("raw.nut", "-c:v rawvideo")}) {
+    const auto movie = open(palette(name, codec));
+    ASSERT_TRUE(movie);
+    EXPECT_EQ(movie->facts().pixel_format, "pal8") << name;
+    const auto picture = read(movie, 0).value();
+    ASSERT_TRUE(picture.has_alpha);
+    double worst = 0;
+    for (int y = 0; y < kClipHeight; ++y)
+      for (int x = 0; x < kClipWidth; ++x)
+        for (std::size_t c = 0; c < 4; ++c)
+          worst = std::max(worst, std::abs(static_cast<double>(picture.color.at(x, y)[c]) - still->color.at(x, y)[c]));
+    EXPECT_LE(worst, 1e-6) << name;
+  }
+}
+
 /// zimg takes whole samples of chroma alone.
 TEST_F(Clips, OddSidesAreReadWhole) {
   for (const char* pixels : {"yuv420p", "yuv422p10le", "yuv410p", "yuva420p"}) {
