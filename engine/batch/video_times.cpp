@@ -78,6 +78,7 @@ void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& p
     return range;
   };
   plan.range = range_from(0);
+  plan.range.clock = facts.clock;
   plan.audio_range = range_from(running ? facts.pts.front() : 0);
 }
 

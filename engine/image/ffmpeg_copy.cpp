@@ -64,6 +64,7 @@ Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path
   if (code < 0) return copy->cannot_be_read(code);
   code = avformat_find_stream_info(copy->input_, nullptr);
   if (code < 0 || copy->bytes_->given_up()) return copy->cannot_be_read(code);
+  copy->clock_.emplace(range.clock, copy->input_->nb_streams);
   AFTERGLOW_CHECK(copy->add_streams(sound_only, name, diagnostics));
   if (!sound_only) copy->add_chapters();
   return copy;
@@ -187,23 +188,34 @@ Result<void> FfmpegCopy::put(AVPacket& packet) {
   return output_.write(packet);
 }
 
+/// Reads up to a packet that is held by the output, by the clock that runs on. False: the end.
+Result<bool> FfmpegCopy::wait_for_next() {
+  waiting_.reset(av_packet_alloc());
+  if (!waiting_) return Error{ErrorKind::io, "cannot be written: no memory"};
+  while (true) {
+    av_packet_unref(waiting_.get());
+    const int code = av_read_frame(input_, waiting_.get());
+    if (code < 0) {
+      ended_ = true;
+      if (code == AVERROR_EOF && !bytes_->given_up()) return false;
+      return cannot_be_read(code);
+    }
+    bytes_->packet_came();
+    const auto stream = static_cast<std::size_t>(waiting_->stream_index);
+    const bool held = stream < target_.size() && target_[stream] >= 0;
+    if (held && clock_->follow(*waiting_, *input_->streams[stream])) return true;
+  }
+}
+
 Result<void> FfmpegCopy::copy(std::int64_t until) {
   while (!ended_) {
     if (!waiting_) {
-      waiting_.reset(av_packet_alloc());
-      if (!waiting_) return Error{ErrorKind::io, "cannot be written: no memory"};
-      const int code = av_read_frame(input_, waiting_.get());
-      if (code < 0) {
-        ended_ = true;
-        if (code == AVERROR_EOF && !bytes_->given_up()) return {};
-        return cannot_be_read(code);
-      }
-      bytes_->packet_came();
+      AFTERGLOW_TRY(const bool more, wait_for_next());
+      if (!more) return {};
     }
     const auto stream = static_cast<std::size_t>(waiting_->stream_index);
     const std::int64_t stamp = waiting_->dts != AV_NOPTS_VALUE ? waiting_->dts : waiting_->pts;
-    const bool wanted = stream < target_.size() && target_[stream] >= 0;
-    if (wanted && stamp != AV_NOPTS_VALUE) {
+    if (stamp != AV_NOPTS_VALUE) {
       const std::int64_t time = begin_of(*waiting_, stamp);
       if (time >= range_.begin && time < range_.end) {
         if (time - range_.shift >= until) return {};  // later

@@ -5,12 +5,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "image/ffmpeg_bytes.h"
+#include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_handles.h"
 #include "image/ffmpeg_output.h"
 #include "image/ffmpeg_subtitles.h"
@@ -42,6 +44,7 @@ class FfmpegCopy {
   Result<void> add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics);
   void add_chapters();
   std::int64_t begin_of(AVPacket& packet, std::int64_t stamp) const;
+  Result<bool> wait_for_next();
   Result<void> put(AVPacket& packet);
   Error cannot_be_read(int code) const;
 
@@ -53,6 +56,7 @@ class FfmpegCopy {
   std::vector<std::unique_ptr<FfmpegSubtitles>> texts_;  ///< of streams that become others
   PacketHandle waiting_;                                 ///< read, and later than the last `until`
   CopyRange range_;
+  std::optional<ClockFollower> clock_;
   bool ended_ = false;
 };
 

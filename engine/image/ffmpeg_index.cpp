@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_log.h"
 
 namespace afterglow {
@@ -194,6 +195,7 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
     av_packet_unref(packet.get());
   }
   if (index.packets.empty()) return Error{ErrorKind::io, "has no frame (truncated?)"};
+  index.parts = run_on(input.container(), input.stream().time_base, index.packets);
   hide_what_comes_before_the_first_key(index.packets);
   sort_by_time(index);
   static_cast<void>(ffmpeg_said());

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "core/result.h"
+#include "image/clock_part.h"
 #include "image/ffmpeg_input.h"
 
 namespace afterglow {
 
 struct MoviePacket {
   std::int64_t pts = 0, dts = 0, pos = 0;
+  std::int64_t shift = 0;  ///< what was added to the stamps in the file (ClockPart)
   int size = 0;
   std::int64_t duration = 0;  ///< as the container says, or FFmpeg guesses; 0: neither
   bool key = false;           ///< decoding can begin here
@@ -30,6 +32,7 @@ struct MovieIndex {
   std::vector<int> keys;             ///< packets at which decoding can begin
   long long last_length = 0;         ///< how long the last frame shows, where the container says so; else 0
   std::size_t missing = 0;           ///< frames at the end that the file tells of and does not hold
+  std::vector<ClockPart> parts;      ///< where the file's clock starts anew; empty: it does not
 
   /// Where decoding has to begin so that this packet's frame comes out whole: in a closed group of pictures its key
   /// packet; pictures that show before their key packet need the one before.

@@ -109,6 +109,7 @@ class FfmpegMovie : public MovieSource {
       }
       facts_ = facts_of(decoder_->input(), **first);
       facts_.pts = index_.pts;
+      facts_.clock = index_.parts;
       facts_.last_length = index_.missing == 0 ? index_.last_length : 0;
       facts_.missing = index_.missing;
       fill_in(facts_);

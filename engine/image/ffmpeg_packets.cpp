@@ -12,7 +12,13 @@ namespace {
 
 constexpr int kMostStrangers = 64;  // packets that begin in the middle, after a seek
 
-auto place_of(const MoviePacket& packet) { return std::tuple(packet.pos, packet.dts, packet.pts, packet.size); }
+std::int64_t in_file(std::int64_t stamp, const MoviePacket& packet) {
+  return stamp == AV_NOPTS_VALUE ? stamp : stamp - packet.shift;
+}
+
+auto place_of(const MoviePacket& packet) {
+  return std::tuple(packet.pos, in_file(packet.dts, packet), in_file(packet.pts, packet), packet.size);
+}
 
 }  // namespace
 
@@ -98,8 +104,9 @@ Result<void> FfmpegPackets::seek(int packet) {
   const MoviePacket& wanted = index_.packets[static_cast<std::size_t>(packet)];
   const AVRational base = input_->stream().time_base;
   const std::int64_t second = base.num > 0 ? base.den / base.num : 1;
-  const bool found = packet > 0 && (try_seek(wanted.pts, packet) || try_seek(wanted.dts, packet) ||
-                                    (wanted.dts != AV_NOPTS_VALUE && try_seek(wanted.dts - second, packet)));
+  const std::int64_t pts = in_file(wanted.pts, wanted), dts = in_file(wanted.dts, wanted);
+  const bool found = packet > 0 && (try_seek(pts, packet) || try_seek(dts, packet) ||
+                                    (dts != AV_NOPTS_VALUE && try_seek(dts - second, packet)));
   static_cast<void>(ffmpeg_said());
   if (given_up_) return not_there();
   return found ? Result<void>() : begin_anew(packet);

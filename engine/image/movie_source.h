@@ -14,6 +14,7 @@
 #include "core/geometry.h"
 #include "core/patience.h"
 #include "core/result.h"
+#include "image/clock_part.h"
 #include "image/metadata.h"
 #include "image/size_limits.h"
 
@@ -51,13 +52,14 @@ struct MovieFacts {
   bool sound = false;           ///< of what cannot be sought in: there is sound beside the pictures
   bool hdr_metadata = false;    ///< it says which display it was made on, or how bright it gets (HDR10)
   MovieColor color;
-  Rational rate{0, 1};         ///< frames a second, on the average; 0: unknown
-  Rational time_base{1, 1};    ///< seconds of a time stamp's unit
-  std::vector<long long> pts;  ///< of each frame that the file has or ought to have, in the order in which they show
-  long long last_length = 0;   ///< how long the last frame shows, in the same unit; 0: the file does not say
-  std::size_t missing = 0;     ///< so many at the end are not there: the file is shorter than it says
-  std::string time_code;       ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
-  bool leaves_alpha = false;   ///< an alpha that is not read
+  Rational rate{0, 1};           ///< frames a second, on the average; 0: unknown
+  Rational time_base{1, 1};      ///< seconds of a time stamp's unit
+  std::vector<long long> pts;    ///< of each frame that the file has or ought to have, in the order in which they show
+  std::vector<ClockPart> clock;  ///< where the file's clock starts anew, while `pts` runs on; empty: it does not
+  long long last_length = 0;     ///< how long the last frame shows, in the same unit; 0: the file does not say
+  std::size_t missing = 0;       ///< so many at the end are not there: the file is shorter than it says
+  std::string time_code;         ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
+  bool leaves_alpha = false;     ///< an alpha that is not read
   std::vector<std::string> notes;  ///< what people may want to know
 };
 

@@ -13,6 +13,7 @@
 #include "core/diagnostics.h"
 #include "core/patience.h"
 #include "core/result.h"
+#include "image/clock_part.h"
 #include "image/metadata.h"
 #include "image/output_space.h"
 #include "image/pack_frame.h"
@@ -30,7 +31,8 @@ std::vector<std::string> video_codecs();
 /// Part of the source that is copied beside the frames. Times in microseconds of its clock.
 struct CopyRange {
   long long begin = std::numeric_limits<long long>::min(), end = std::numeric_limits<long long>::max();
-  long long shift = 0;  ///< goes off every time stamp
+  long long shift = 0;           ///< goes off every time stamp
+  std::vector<ClockPart> clock;  ///< where that of the source starts anew
 };
 
 /// Everything that a module needs to write one.

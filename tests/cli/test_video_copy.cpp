@@ -82,6 +82,49 @@ TEST_F(VideoOut, VideoToVideo) {
   EXPECT_LT(std::stod(sound.back()), std::stod(ten.back()) + 0.09);
 }
 
+/// Joined streams: the sound of each part stays beside its pictures.
+TEST_F(VideoOut, SoundFollowsAClockThatStartsAnew) {
+  make_frames(24);
+  ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
+                  "anoisesrc=duration=1:seed=1 -c:v libx264 -bf 2 -g 12 -c:a mp2 part.ts && "
+                  "cat part.ts part.ts > joined.ts")
+                .exit_code,
+            0);
+  using Packets = std::vector<std::pair<std::string, double>>;
+  const auto packets = [&](const std::string& name, const std::string& stream) {
+    Packets all;
+    const auto probed = probe(name, "-show_packets -show_data_hash md5 -select_streams " + stream);
+    for (const auto& one : probed.at("packets"))
+      all.emplace_back(one.at("data_hash").get<std::string>(), std::stod(one.at("pts_time").get<std::string>()));
+    return all;
+  };
+  const auto times_of = [](const Packets& all, const std::string& hash) {
+    std::vector<double> times;
+    for (const auto& [own, time] : all)
+      if (own == hash) times.push_back(time);
+    return times;
+  };
+  const Packets part = packets("part.ts", "a");
+  const double late = part.at(9).second - packets("part.ts", "v").front().second;
+  const auto out_times = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"run", "look.lua", "joined.ts", "-o", name, "--codec", "ffv1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    const double begin = packets(name, "v").front().second;
+    std::vector<double> times = times_of(packets(name, "a"), part.at(9).first);
+    for (double& time : times) time -= begin;
+    return times;
+  };
+  const std::vector<double> whole = out_times("whole.mkv", {});
+  ASSERT_EQ(whole.size(), 2u);
+  EXPECT_NEAR(whole[0], late, 2e-3);
+  EXPECT_NEAR(whole[1], late + 1, 2e-3);
+  const std::vector<double> cut = out_times("cut.mkv", {"--frames", "19-40"});
+  ASSERT_EQ(cut.size(), 1u);
+  EXPECT_NEAR(cut[0], late + 1 - 18 / 24.0, 2e-3);
+}
+
 /// What a container does not hold as it is becomes text that it does; attachments go where they can be named.
 TEST_F(VideoOut, SubtitlesBecomeThoseOfTheContainer) {
   make_frames(24);

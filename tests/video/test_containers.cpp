@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "clips.h"
 #include "core/file.h"
@@ -34,6 +35,33 @@ TEST_F(Containers, EditListsSayWhereAClipBegins) {
     EXPECT_EQ(number_of(*picture), shown[static_cast<std::size_t>(frame)]);
   }
   EXPECT_EQ(movie->time(0), 0);
+}
+
+/// Joined MPEG streams: the second begins when the first has ended, whatever its clock says.
+TEST_F(Containers, ClocksThatStartAnewRunOn) {
+  const std::string mpeg2 = "-c:v mpeg2video -q:v 2 -g 12 -bf 2 -pix_fmt yuv420p";
+  for (const auto& [end, codec] : {std::pair("ts", std::string(kPlainX264)), {"ts", mpeg2}, {"mpg", mpeg2}})
+    for (const char* offsets : {"0 0", "0 100", "100 0", "100 20", "95430 0", "95441"}) {
+      const std::string name = fmt::format("{}: {} at {}", end, codec, offsets);
+      std::string joined;
+      std::istringstream in(offsets);
+      for (int offset = 0; in >> offset;)
+        joined += read_file(clip(fmt::format("{}.{}", offset, end),
+                                 fmt::format("{} -output_ts_offset {}", codec, offset), 36))
+                      .value();
+      std::ofstream(path(fmt::format("joined.{}", end)), std::ios::binary) << joined;
+      const auto movie = open(path(fmt::format("joined.{}", end)));
+      ASSERT_TRUE(movie) << name;
+      ASSERT_EQ(movie->frames() % 36, 0) << name;
+      EXPECT_EQ(movie->frames(), std::string(offsets).find(' ') == std::string::npos ? 36 : 72) << name;
+      for (const int frame : {0, 34, 35, 36, 37, 71, 20, 50}) {
+        if (frame >= movie->frames()) continue;
+        const auto picture = read(movie, frame);
+        ASSERT_TRUE(picture) << name << ": " << picture.error().text();
+        EXPECT_EQ(number_of(*picture), frame % 36 + 1) << name;
+        EXPECT_NEAR(movie->time(frame), frame / 24.0, 1e-3) << name;
+      }
+    }
 }
 
 TEST_F(Containers, VariableRatesKeepTheirTimes) {

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_clock.h"
+
+extern "C" {
+#include <libavutil/mathematics.h>
+}
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <span>
+#include <string_view>
+
+namespace afterglow {
+namespace {
+
+constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
+// As in the program ffmpeg: MPEG streams may pause for so long, and their stamps of decoding never go back.
+constexpr std::int64_t kLongestPause = 10 * AV_TIME_BASE, kRoundBack = AV_TIME_BASE / 10;
+/// Microseconds. Sound that goes on as exactly as that is of the same part.
+constexpr std::int64_t kSeamless = AV_TIME_BASE / 2;
+
+bool is_known(std::int64_t stamp) { return stamp != AV_NOPTS_VALUE; }
+
+/// Where parts begin, as places in `packets`; the first at 0.
+std::vector<std::size_t> beginnings(AVRational time_base, std::span<const MoviePacket> packets) {
+  const std::int64_t pause = av_rescale_q(kLongestPause, kMicroseconds, time_base),
+                     back = av_rescale_q(kRoundBack, kMicroseconds, time_base);
+  std::vector<std::size_t> out{0};
+  std::int64_t last = AV_NOPTS_VALUE;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const std::int64_t stamp = packets[i].dts;
+    if (!is_known(stamp)) continue;
+    if (is_known(last) && (stamp < last - back || stamp > last + pause)) out.push_back(i);
+    last = stamp;
+  }
+  return out;
+}
+
+/// What shows before the first key cannot be decoded, as at the beginning of a file.
+void hide_orphans(std::span<MoviePacket> part) {
+  const auto key = std::ranges::find(part, true, &MoviePacket::key);
+  if (key == part.end()) return;
+  for (MoviePacket& packet : part)
+    if (&packet < &*key || (is_known(packet.pts) && packet.pts < key->pts)) packet.shown = false;
+}
+
+/// The usual way from one packet to the next; where there is but one, its own length.
+std::int64_t step_of(std::span<const MoviePacket> part) {
+  std::vector<std::int64_t> steps;
+  for (std::size_t i = 1; i < part.size(); ++i)
+    if (is_known(part[i].dts) && is_known(part[i - 1].dts) && part[i].dts > part[i - 1].dts)
+      steps.push_back(part[i].dts - part[i - 1].dts);
+  if (steps.empty()) return std::max<std::int64_t>(part.back().duration, 1);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  return *middle;
+}
+
+/// So that the part begins when those before it have ended: both to decode and to show.
+std::int64_t shift_behind(std::span<const MoviePacket> before, std::int64_t step, std::span<const MoviePacket> part) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  std::int64_t decoded = kLeast, shown = kLeast;
+  for (const MoviePacket& packet : before) {
+    if (is_known(packet.dts)) decoded = std::max(decoded, packet.dts);
+    if (is_known(packet.pts) && packet.shown) shown = std::max(shown, packet.pts);
+  }
+  std::int64_t shift = decoded + step - part.front().dts;
+  const auto visible = [](const MoviePacket& packet) { return packet.shown && is_known(packet.pts); };
+  std::int64_t first = AV_NOPTS_VALUE;
+  for (const MoviePacket& packet : part)
+    if (visible(packet) && (!is_known(first) || packet.pts < first)) first = packet.pts;
+  if (is_known(first) && shown != kLeast) shift = std::max(shift, shown + step - first);
+  return shift;
+}
+
+/// Where parts meet, counters of packets start anew as well, which looks like damage of the last picture; parsers say
+/// it of the one before. What is damaged indeed its decoder will say.
+void trust_last(std::span<MoviePacket> part) {
+  constexpr std::size_t kTold = 2;
+  for (MoviePacket& packet : part.last(std::min(kTold, part.size()))) packet.damaged = false;
+}
+
+void move(std::span<MoviePacket> part, std::int64_t shift) {
+  for (MoviePacket& packet : part) {
+    packet.shift = shift;
+    if (is_known(packet.pts)) packet.pts += shift;
+    if (is_known(packet.dts)) packet.dts += shift;
+  }
+}
+
+}  // namespace
+
+std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_base,
+                              std::vector<MoviePacket>& packets) {
+  if (!std::string_view(container.iformat->name).starts_with("mpeg")) return {};
+  const std::vector<std::size_t> begins = beginnings(time_base, packets);
+  if (begins.size() == 1) return {};
+  std::vector<ClockPart> parts{{}};
+  const std::span<MoviePacket> all(packets);
+  for (std::size_t i = 1; i < begins.size(); ++i) {
+    const std::size_t begin = begins[i], end = i + 1 < begins.size() ? begins[i + 1] : packets.size();
+    const auto before = all.subspan(begins[i - 1], begin - begins[i - 1]), part = all.subspan(begin, end - begin);
+    hide_orphans(part);
+    const std::int64_t shift = shift_behind(before, step_of(before), part);
+    const std::int64_t pos = std::max(parts.back().pos, part.front().pos);
+    move(part, shift);
+    trust_last(before);
+    parts.push_back({pos, av_rescale_q(shift, time_base, kMicroseconds)});
+  }
+  return parts;
+}
+
+/// Sound lies some way off its pictures in the file: where parts meet it is of the one that goes on best.
+std::int64_t ClockFollower::shift_of(const AVPacket& packet, std::int64_t time, std::int64_t end) const {
+  auto here = std::ranges::upper_bound(parts_, packet.pos, {}, &ClockPart::pos);
+  if (here != parts_.begin()) --here;
+  std::int64_t best = kSeamless, shift = here->shift;
+  if (!is_known(end)) return shift;
+  const auto first = here == parts_.begin() ? here : here - 1;
+  const auto last = here + 1 == parts_.end() ? here : here + 1;
+  for (auto part = first; part <= last; ++part) {
+    const std::int64_t off = std::abs(time + part->shift - end);
+    if (off >= best) continue;
+    best = off;
+    shift = part->shift;
+  }
+  return shift;
+}
+
+bool ClockFollower::follow(AVPacket& packet, const AVStream& stream) {
+  if (parts_.empty()) return true;
+  const std::int64_t stamp = is_known(packet.dts) ? packet.dts : packet.pts;
+  if (!is_known(stamp)) return true;
+  const bool sound = stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO;
+  std::int64_t& end = ends_[static_cast<std::size_t>(packet.stream_index)];
+  const std::int64_t time = av_rescale_q(stamp, stream.time_base, kMicroseconds);
+  const std::int64_t shift = shift_of(packet, time, sound ? end : kNone);
+  const std::int64_t moved = av_rescale_q(shift, kMicroseconds, stream.time_base);
+  if (is_known(packet.pts)) packet.pts += moved;
+  if (is_known(packet.dts)) packet.dts += moved;
+  const std::int64_t length = av_rescale_q(packet.duration, stream.time_base, kMicroseconds);
+  if (is_known(end) && time + shift < end - length / 2 - 1) return false;
+  end = time + shift + length;
+  return true;
+}
+
+}  // namespace afterglow
