@@ -60,13 +60,24 @@ class FfmpegMovie : public MovieSource {
     return std::ranges::any_of(index_.packets, [](const MoviePacket& p) { return p.shown && p.pts == AV_NOPTS_VALUE; });
   }
 
+  /// How much later than they are decoded frames show, by the first that tells both: program streams say it of one
+  /// picture in several.
+  static std::int64_t delay_of(const std::vector<int>& order, const std::vector<std::int64_t>& decoded,
+                               const std::vector<std::int64_t>& told) {
+    for (std::size_t i = 0; i < order.size(); ++i)
+      if (const std::int64_t shows = told[static_cast<std::size_t>(order[i])]; shows != AV_NOPTS_VALUE)
+        return shows - decoded[i];
+    return 0;
+  }
+
   Result<void> order_frames(std::unique_ptr<FfmpegInput> input) {
     const AVCodecDescriptor* codec = avcodec_descriptor_get(input->stream().codecpar->codec_id);
-    std::vector<std::int64_t> stamps;
+    std::vector<std::int64_t> stamps, told;
     for (std::size_t i = 0; i < index_.packets.size(); ++i) {
       MoviePacket& packet = index_.packets[i];
       const bool timed = packet.dts != AV_NOPTS_VALUE;
       stamps.push_back(timed ? packet.dts : stamps.empty() ? 0 : stamps.back() + 1);
+      told.push_back(packet.pts);
     }
     std::ranges::sort(stamps);
     std::vector<int> order;
@@ -81,11 +92,12 @@ class FfmpegMovie : public MovieSource {
     if (reorders) {
       AFTERGLOW_TRY(order, decoder_->order_by_decoding());
     }
+    const std::int64_t later = delay_of(order, stamps, told);
     for (MoviePacket& packet : index_.packets) packet.shown = false;
     for (std::size_t i = 0; i < order.size(); ++i) {
       MoviePacket& packet = index_.packets[static_cast<std::size_t>(order[i])];
       packet.shown = true;
-      packet.pts = stamps[i];
+      packet.pts = stamps[i] + later;
     }
     sort_by_time(index_);
     if (index_.order.empty()) return Error{ErrorKind::io, "has no frame that can be decoded", request_.file.string()};

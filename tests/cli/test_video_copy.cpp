@@ -125,6 +125,31 @@ TEST_F(VideoOut, SoundFollowsAClockThatStartsAnew) {
   EXPECT_NEAR(cut[0], late + 1 - 18 / 24.0, 2e-3);
 }
 
+/// Several pictures in a packet of a program stream, of which one says when it shows: sound stays beside them.
+TEST_F(VideoOut, PicturesThatShareAPacketShowWhenTheySay) {
+  make_frames(24);
+  ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
+                  "anoisesrc=duration=1:seed=1 -s 32x32 -c:v mpeg2video -b:v 60k -bf 2 -g 12 -c:a mp2 part.mpg")
+                .exit_code,
+            0);
+  const auto packets = probe("part.mpg", "-show_packets").at("packets");
+  double picture = -1, sound = -1;
+  int silent = 0;
+  for (const auto& packet : packets) {
+    const bool told = packet.contains("pts_time");
+    double& first = packet.at("codec_type") == "video" ? picture : sound;
+    if (told && first < 0) first = std::stod(packet.at("pts_time").get<std::string>());
+    silent += told ? 0 : 1;
+  }
+  ASSERT_GT(silent, 5) << "pictures share packets";
+  ASSERT_EQ(run({"run", "look.lua", "part.mpg", "-o", "out.mkv", "--codec", "ffv1"}).exit_code, kDone);
+  const auto begin = [&](const char* stream) {
+    const auto all = probe("out.mkv", std::string("-show_packets -select_streams ") + stream).at("packets");
+    return std::stod(all.at(0).at("pts_time").get<std::string>());
+  };
+  EXPECT_NEAR(begin("a") - begin("v"), sound - picture, 2e-3);
+}
+
 /// What a container does not hold as it is becomes text that it does; attachments go where they can be named.
 TEST_F(VideoOut, SubtitlesBecomeThoseOfTheContainer) {
   make_frames(24);
