@@ -128,10 +128,13 @@ MovieColor color_of(const AVFrame& frame, AVCodecID codec) {
   for (const AVCodecID still : {AV_CODEC_ID_MJPEG, AV_CODEC_ID_GIF, AV_CODEC_ID_APNG, AV_CODEC_ID_PNG, AV_CODEC_ID_BMP,
                                 AV_CODEC_ID_WEBP, AV_CODEC_ID_PPM, AV_CODEC_ID_PGM, AV_CODEC_ID_PAM, AV_CODEC_ID_PFM})
     color.picture = color.picture || codec == still;
+  // As FFmpeg's swscale has it: grey that no matrix of YUV goes with is no part of a video signal.
+  const bool plain_grey = !color.rgb && format && format->nb_components <= 2 &&
+                          (color.matrix == AVCOL_SPC_UNSPECIFIED || color.matrix == AVCOL_SPC_RGB);
   const bool full_format = format && std::strncmp(format->name, "yuvj", 4) == 0;
   const int range = number_of(frame.color_range);
-  color.full_range =
-      range == AVCOL_RANGE_JPEG || full_format || (range == AVCOL_RANGE_UNSPECIFIED && (color.rgb || color.picture));
+  color.full_range = range == AVCOL_RANGE_JPEG || full_format ||
+                     (range == AVCOL_RANGE_UNSPECIFIED && (color.rgb || color.picture || plain_grey));
   return color;
 }
 

@@ -233,6 +233,55 @@ TEST_F(Clips, AlphaIsMultipliedInLight) {
   EXPECT_NEAR(picture.color.at(x, y)[0], alpha * std::pow((stored + 0.055) / 1.055, 2.4), 1e-5);
 }
 
+/// Grey that says neither matrix nor range is full, as for FFmpeg; what says one of them is held to it.
+TEST_F(Clips, PlainGreyIsOfFullRange) {
+  constexpr int kWidth = 64;
+  const auto stored = [&](const std::string& file, int x) {
+    const auto movie = open(file);
+    if (!movie) return -1.0;
+    std::vector<float> row(std::size_t{kWidth} * 2 * 3);
+    std::vector<ReadTarget> targets;
+    for (int channel = 0; channel < 3; ++channel) targets.push_back({channel, row.data() + channel, 3, kWidth * 3});
+    const auto read = Movie::frame(movie, 0)->read(0, targets);
+    EXPECT_TRUE(read) << read.error().text();
+    return static_cast<double>(row[static_cast<std::size_t>(x) * 3]);
+  };
+  struct Kind {
+    const char *pixels, *file, *options;
+    bool full;
+  };
+  for (const Kind& kind : {Kind{"gray", "a.avi", "-c:v rawvideo", true},
+                           {"gray", "a.nut", "-c:v rawvideo", true},
+                           {"gray10le", "b.nut", "-c:v rawvideo", true},
+                           {"gray16le", "c.nut", "-c:v rawvideo", true},
+                           {"ya8", "d.nut", "-c:v rawvideo", true},
+                           {"gray", "e.mkv", "-c:v ffv1", true},
+                           {"gray", "f.y4m", "", true},
+                           {"gray", "g.y4m", "-color_range tv", false},
+                           {"gray", "h.y4m", "-color_range pc", true},
+                           {"gray", "i.mkv", "-c:v ffv1 -color_range tv", false},
+                           {"gray", "j.mkv", "-c:v ffv1 -colorspace bt709", false}}) {
+    const std::string_view pixels = kind.pixels;
+    const int bits = pixels == "gray10le" ? 10 : pixels == "gray16le" ? 16 : 8;
+    std::ofstream raw(path("grey.raw"), std::ios::binary);
+    for (int i = 0; i < kWidth * 2; ++i) {
+      const int code = i % kWidth << (bits - 6);
+      raw.put(static_cast<char>(code & 255));
+      if (bits > 8) raw.put(static_cast<char>(code >> 8));
+      if (pixels == "ya8") raw.put(static_cast<char>(255));
+    }
+    raw.close();
+    ffmpeg(fmt::format("-f rawvideo -pix_fmt {0} -s {1}x2 -i '{2}' {3} -pix_fmt {0} '{4}'", pixels, kWidth,
+                       path("grey.raw"), kind.options, path(kind.file)));
+    const double most = (1 << bits) - 1, scale = 1 << (bits - 8);
+    for (const int x : {0, 2, 30, 63}) {
+      const double code = x << (bits - 6);
+      const double expected = kind.full ? code / most : (code / scale - 16) / 219;
+      EXPECT_NEAR(stored(path(kind.file), x), expected, 1e-5) << kind.file << " " << pixels << " at " << x;
+    }
+  }
+}
+
 /// Codes of a palette are that palette's colours, and its alpha: as in a still picture of the same codes.
 TEST_F(Clips, PalettesAreLookedUp) {
   const auto palette = [&](const char* name, const char* codec) {
