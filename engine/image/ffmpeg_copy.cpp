@@ -41,6 +41,12 @@ bool is_attachment(const AVOutputFormat& format, const AVStream& from) {
          av_dict_get(from.metadata, "filename", nullptr, 0) && av_dict_get(from.metadata, "mimetype", nullptr, 0);
 }
 
+void move(AVPacket& packet, std::int64_t microseconds, AVRational clock) {
+  const std::int64_t by = av_rescale_q(microseconds, kMicroseconds, clock);
+  if (packet.pts != AV_NOPTS_VALUE) packet.pts += by;
+  if (packet.dts != AV_NOPTS_VALUE) packet.dts += by;
+}
+
 }  // namespace
 
 FfmpegCopy::~FfmpegCopy() {
@@ -179,10 +185,11 @@ Result<void> FfmpegCopy::put(AVPacket& packet) {
   const AVStream& from = *input_->streams[packet.stream_index];
   const int target = target_[static_cast<std::size_t>(packet.stream_index)];
   AVStream& to = *output_.container().streams[target];
-  const std::int64_t shift = av_rescale_q(range_.shift, kMicroseconds, from.time_base);
-  if (packet.pts != AV_NOPTS_VALUE) packet.pts -= shift;
-  if (packet.dts != AV_NOPTS_VALUE) packet.dts -= shift;
+  // In the finer of both clocks: that of MP3 in AVI, say, counts packets alone.
+  const bool before = av_cmp_q(from.time_base, to.time_base) < 0;
+  if (before) move(packet, -range_.shift, from.time_base);
   av_packet_rescale_ts(&packet, from.time_base, to.time_base);
+  if (!before) move(packet, -range_.shift, to.time_base);
   packet.stream_index = target;
   packet.pos = -1;
   return output_.write(packet);

@@ -125,6 +125,32 @@ TEST_F(VideoOut, SoundFollowsAClockThatStartsAnew) {
   EXPECT_NEAR(cut[0], late + 1 - 18 / 24.0, 2e-3);
 }
 
+/// The clock of MP3 in AVI counts packets of 24 ms: a cut is made by a finer one.
+TEST_F(VideoOut, CutsAreNoRounderThanTheClockOfTheOutput) {
+  make_frames(24);
+  ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
+                  "anoisesrc=duration=1:seed=1:sample_rate=48000 -c:v mjpeg -c:a libmp3lame in.avi")
+                .exit_code,
+            0);
+  const auto packets = [&](const std::string& name, const char* stream) {
+    return probe(name, std::string("-show_packets -show_data_hash md5 -select_streams ") + stream).at("packets");
+  };
+  const auto time_of = [](const auto& packet) { return std::stod(packet.at("pts_time").template get<std::string>()); };
+  const auto pictures = packets("in.avi", "v"), sounds = packets("in.avi", "a");
+  for (const int first : {2, 8, 13}) {
+    ASSERT_EQ(run({"run", "look.lua", "in.avi", "-o", "out.mkv", "--codec", "ffv1", "--frames",
+                   std::to_string(first) + "-24"})
+                  .exit_code,
+              kDone);
+    const double shift = time_of(pictures.at(static_cast<std::size_t>(first) - 1));
+    const auto& wanted = sounds.at(30);
+    double found = -1;
+    for (const auto& packet : packets("out.mkv", "a"))
+      if (packet.at("data_hash") == wanted.at("data_hash")) found = time_of(packet);
+    EXPECT_NEAR(found, time_of(wanted) - shift, 1.1e-3) << first;
+  }
+}
+
 /// Several pictures in a packet of a program stream, of which one says when it shows: sound stays beside them.
 TEST_F(VideoOut, PicturesThatShareAPacketShowWhenTheySay) {
   make_frames(24);
