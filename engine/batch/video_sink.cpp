@@ -115,7 +115,8 @@ class VideoSink : public FrameSink {
           "hdr metadata", fmt::format("{}: what the input says of its display and its brightest light (HDR10) is not "
                                       "kept: it was of other pictures",
                                       file_.string()));
-    if (job.passing && job.movie && job.movie->facts().sound && plan.audio.empty() && !options_.video.piece)
+    if (job.passing && job.movie && job.movie->facts().sound && plan.audio.empty() && !plan.silent &&
+        !options_.video.piece)
       diagnostics_.warn_once("sound of a stream",
                              fmt::format("{}: the sound of {} is not copied; --audio takes it from a file",
                                          file_.string(), job.input.string()));

@@ -30,9 +30,41 @@ std::string stream_name(const AVStream& stream, unsigned index) {
   return fmt::format("{} {} ({})", kind ? kind : "data", index + 1, avcodec_get_name(stream.codecpar->codec_id));
 }
 
-bool can_hold(const AVOutputFormat& format, AVCodecID codec) {
-  const int held = avformat_query_codec(&format, codec, FF_COMPLIANCE_NORMAL);
-  return held == 1;
+bool is_quicktime(const AVOutputFormat& format) {
+  const std::string_view name = format.name;
+  return name == "mov" || name == "mp4";
+}
+
+/// FFmpeg calls FLAC in MP4 an experiment, though it is written down since 2018 and players know it.
+bool is_experiment(const AVOutputFormat& format, AVCodecID codec) {
+  return codec == AV_CODEC_ID_FLAC && std::string_view(format.name) == "mp4";
+}
+
+/// MOV and MP4 refuse some kinds of sound no sooner than at their head.
+bool head_takes(const AVOutputFormat& format, const AVStream& from) {
+  AVFormatContext* trial = nullptr;
+  if (avformat_alloc_output_context2(&trial, &format, nullptr, nullptr) < 0) return false;
+  AVStream* to = avformat_new_stream(trial, nullptr);
+  bool takes = to && avio_open_dyn_buf(&trial->pb) >= 0 && avcodec_parameters_copy(to->codecpar, from.codecpar) >= 0;
+  if (takes) {
+    to->codecpar->codec_tag = 0;
+    to->time_base = from.time_base;
+    if (is_experiment(format, from.codecpar->codec_id)) trial->strict_std_compliance = FF_COMPLIANCE_EXPERIMENTAL;
+    takes = avformat_init_output(trial, nullptr) >= 0;
+  }
+  std::uint8_t* written = nullptr;
+  if (trial->pb) avio_close_dyn_buf(trial->pb, &written);
+  av_free(written);
+  trial->pb = nullptr;
+  avformat_free_context(trial);
+  static_cast<void>(ffmpeg_said());
+  return takes;
+}
+
+bool can_hold(const AVOutputFormat& format, const AVStream& from) {
+  const AVCodecParameters& parameters = *from.codecpar;
+  if (avformat_query_codec(&format, parameters.codec_id, FF_COMPLIANCE_NORMAL) != 1) return false;
+  return parameters.codec_type != AVMEDIA_TYPE_AUDIO || !is_quicktime(format) || head_takes(format, from);
 }
 
 /// Fonts and the like, which Matroska holds by name and kind.
@@ -53,7 +85,7 @@ FfmpegCopy::~FfmpegCopy() {
   if (input_) avformat_close_input(&input_);
 }
 
-Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path& file, bool sound_only,
+Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path& file, Copied what,
                                                      FfmpegOutput& output, const CopyRange& range,
                                                      const Patience& patience, const std::string& name,
                                                      Diagnostics& diagnostics) {
@@ -71,8 +103,8 @@ Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path
   code = avformat_find_stream_info(copy->input_, nullptr);
   if (code < 0 || copy->bytes_->given_up()) return copy->cannot_be_read(code);
   copy->clock_.emplace(range.clock, copy->input_->nb_streams);
-  AFTERGLOW_CHECK(copy->add_streams(sound_only, name, diagnostics));
-  if (!sound_only) copy->add_chapters();
+  AFTERGLOW_CHECK(copy->add_streams(what, name, diagnostics));
+  if (what != Copied::sound) copy->add_chapters();
   return copy;
 }
 
@@ -90,7 +122,7 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
   const AVStream& from = *input_->streams[index];
   const AVMediaType kind = from.codecpar->codec_type;
   const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
-  const bool held = (known && can_hold(*out.oformat, from.codecpar->codec_id)) || is_attachment(*out.oformat, from);
+  const bool held = (known && can_hold(*out.oformat, from)) || is_attachment(*out.oformat, from);
   if (!held && kind == AVMEDIA_TYPE_SUBTITLE) texts_[index] = FfmpegSubtitles::open(from, *out.oformat);
   if (!held && !texts_[index]) return static_cast<AVStream*>(nullptr);
   AVStream* to = avformat_new_stream(&out, nullptr);
@@ -98,6 +130,7 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
                    : texts_[index] ? avcodec_parameters_from_context(to->codecpar, &texts_[index]->encoder())
                                    : avcodec_parameters_copy(to->codecpar, from.codecpar);
   if (code < 0) return Error{ErrorKind::io, "cannot be written: " + ffmpeg_error(code)};
+  if (is_experiment(*out.oformat, to->codecpar->codec_id)) out.strict_std_compliance = FF_COMPLIANCE_EXPERIMENTAL;
   to->codecpar->codec_tag = 0;
   to->time_base = from.time_base;
   to->disposition = from.disposition;
@@ -105,8 +138,9 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
   return to;
 }
 
-Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics) {
+Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagnostics& diagnostics) {
   AVFormatContext& out = output_.container();
+  const bool sound_only = what == Copied::sound;
   std::vector<std::string> left, pictures;
   const int worked_on = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   bool sound = false;
@@ -118,7 +152,9 @@ Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, D
     sound = sound || kind == AVMEDIA_TYPE_AUDIO;
     if (!sound_only && kind == AVMEDIA_TYPE_VIDEO && static_cast<int>(i) != worked_on)
       pictures.push_back(stream_name(from, i));
-    if (kind == AVMEDIA_TYPE_VIDEO || (sound_only && kind != AVMEDIA_TYPE_AUDIO)) continue;
+    if (kind == AVMEDIA_TYPE_VIDEO || (sound_only && kind != AVMEDIA_TYPE_AUDIO) ||
+        (what == Copied::all_but_sound && kind == AVMEDIA_TYPE_AUDIO))
+      continue;
     AFTERGLOW_TRY(const AVStream* to, add_stream(i));
     const bool timecode = from.codecpar->codec_tag == MKTAG('t', 'm', 'c', 'd');  // told by a tag
     if (to)

@@ -20,15 +20,16 @@
 
 namespace afterglow {
 
+/// `sound`: no subtitles, chapters and texts.
+enum class Copied { all, sound, all_but_sound };
+
 /// Not thread-safe. Errors: io (also: no bytes come), interrupted (nobody waits for them any more).
 class FfmpegCopy {
  public:
-  /// Adds to `output` a stream for each of `file` that it can hold; others are named in a warning. `sound_only`: no
-  /// subtitles, chapters and texts.
-  static Result<std::unique_ptr<FfmpegCopy>> open(const std::filesystem::path& file, bool sound_only,
-                                                  FfmpegOutput& output, const CopyRange& range,
-                                                  const Patience& patience, const std::string& name,
-                                                  Diagnostics& diagnostics);
+  /// Adds to `output` a stream for each of `file` that it can hold; others are named in a warning.
+  static Result<std::unique_ptr<FfmpegCopy>> open(const std::filesystem::path& file, Copied what, FfmpegOutput& output,
+                                                  const CopyRange& range, const Patience& patience,
+                                                  const std::string& name, Diagnostics& diagnostics);
   ~FfmpegCopy();
 
   /// Of the first picture in the file; empty: it has none.
@@ -41,7 +42,7 @@ class FfmpegCopy {
  private:
   explicit FfmpegCopy(FfmpegOutput& output) : output_(output) {}
   Result<AVStream*> add_stream(unsigned index);
-  Result<void> add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics);
+  Result<void> add_streams(Copied what, const std::string& name, Diagnostics& diagnostics);
   void add_chapters();
   std::int64_t begin_of(AVPacket& packet, std::int64_t stamp) const;
   Result<bool> wait_for_next();

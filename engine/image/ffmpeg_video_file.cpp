@@ -55,7 +55,8 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   const auto& from = sound_only ? plan_.audio : plan_.source;
   if (from.empty()) return {};
   const CopyRange& range = sound_only ? plan_.audio_range : plan_.range;
-  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, range, plan_.patience, name, diagnostics));
+  const Copied what = sound_only ? Copied::sound : plan_.silent ? Copied::all_but_sound : Copied::all;
+  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, what, *output_, range, plan_.patience, name, diagnostics));
   if (!sound_only) stream_->disposition = copy_->disposition_of_pictures();
   return {};
 }

@@ -275,7 +275,8 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   plan.pack.space = video_space(options, *plan.pack.layout, false);
   describe_space(*plan.pack.space, *plan.pack.layout, plan);
   plan.pack.dither = options.dither.value_or(codec->exact && plan.pack.layout->bits == 8);
-  if (!options.video.piece) plan.audio = options.video.audio;
+  plan.silent = options.video.audio == kNoAudio;
+  if (!options.video.piece && !plan.silent) plan.audio = options.video.audio;
   return plan;
 }
 

@@ -35,6 +35,9 @@ struct CopyRange {
   std::vector<ClockPart> clock;  ///< where that of the source starts anew
 };
 
+/// In place of a file in VideoOptions::audio: no sound, nor that of the source.
+inline constexpr const char* kNoAudio = "none";
+
 /// Everything that a module needs to write one.
 struct VideoPlan {
   std::string container;                                      ///< FFmpeg's muxer
@@ -51,6 +54,7 @@ struct VideoPlan {
   Rational rate{24, 1};          ///< frames a second, on the average
   Rational time_base{1, 24};     ///< seconds of a time stamp's unit
   std::filesystem::path audio;   ///< sound from here: --audio
+  bool silent = false;           ///< kNoAudio
   CopyRange range;               ///< of the source
   CopyRange audio_range;         ///< of the other file, whose time is that since the source's first frame
   std::filesystem::path source;  ///< the video that is worked on: its other streams are copied; empty: none

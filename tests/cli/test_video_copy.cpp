@@ -2,6 +2,7 @@
 // What a video that is written takes from other files: sound, subtitles, chapters, attachments, times.
 
 #include <cstring>
+#include <tuple>
 
 #include "video_out_test.h"
 
@@ -26,6 +27,49 @@ TEST_F(VideoOut, SoundOfAnotherFileIsCopied) {
   EXPECT_EQ(none.exit_code, kFiles);
   EXPECT_THAT(none.err, HasSubstr("in/1001.ppm: error: "));
   EXPECT_FALSE(fs::exists(path("b.mp4")));
+}
+
+/// MOV and MP4 refuse some sound only at their head; FLAC goes into MP4.
+TEST_F(VideoOut, SoundThatTheHeadRefusesIsLeftOut) {
+  make_frames(3);
+  for (const auto& [codec, encoder, held] :
+       {std::tuple("flac", "flac", "mp4"), {"opus", "libopus", "mp4"}, {"truehd", "truehd -strict -2", ""}}) {
+    ASSERT_EQ(shell(std::string("ffmpeg -v error -y -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
+                                "sine=duration=0.2:sample_rate=48000,aformat=channel_layouts=stereo -c:v ffv1 -c:a ") +
+                    encoder + " in.mkv")
+                  .exit_code,
+              0);
+    for (const std::string container : {"mov", "mp4"}) {
+      const Outcome outcome = run({"run", "look.lua", "in.mkv", "-o", "out." + container});
+      EXPECT_EQ(outcome.exit_code, kDone) << codec << " in " << container << ": " << outcome.err;
+      const auto sounds = probe("out." + container, "-show_streams -select_streams a").at("streams");
+      const std::string left = "audio 2 (" + std::string(codec) + ") of in.mkv cannot be held by " + container;
+      if (container == held) {
+        ASSERT_EQ(sounds.size(), 1u) << codec;
+        EXPECT_EQ(sounds.at(0).at("codec_name"), codec);
+        EXPECT_THAT(outcome.err, Not(HasSubstr("audio"))) << codec;
+      } else {
+        EXPECT_TRUE(sounds.empty()) << codec << " in " << container;
+        EXPECT_THAT(outcome.err, HasSubstr(left));
+      }
+    }
+  }
+}
+
+TEST_F(VideoOut, NoSoundIsCopiedWhereNoneIsAskedFor) {
+  make_frames(3);
+  write("text.srt", "1\n00:00:00,000 --> 00:00:00,100\nhello\n");
+  ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i sine=duration=0.2 "
+                  "-i text.srt -c:v ffv1 -c:a flac in.mkv")
+                .exit_code,
+            0);
+  const Outcome outcome = run({"run", "look.lua", "in.mkv", "-o", "out.mov", "--audio", "none"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const auto streams = probe("out.mov", "-show_streams").at("streams");
+  ASSERT_EQ(streams.size(), 2u);
+  EXPECT_EQ(streams.at(1).at("codec_name"), "mov_text");
+  EXPECT_EQ(make_video("sequence.mp4", {"--audio", "none"}).exit_code, kDone);
 }
 
 /// Times, sound, subtitles and chapters of a video stay with it.
