@@ -67,6 +67,13 @@ bool can_hold(const AVOutputFormat& format, const AVStream& from) {
   return parameters.codec_type != AVMEDIA_TYPE_AUDIO || !is_quicktime(format) || head_takes(format, from);
 }
 
+/// Told by something else in the output: timecodes by a tag, names of chapters by the chapters.
+bool is_told_elsewhere(const AVStream& from) {
+  const bool names_of_chapters =
+      from.codecpar->codec_id == AV_CODEC_ID_BIN_DATA && from.discard == AVDISCARD_ALL;  // as FFmpeg reads QuickTime's
+  return names_of_chapters || from.codecpar->codec_tag == MKTAG('t', 'm', 'c', 'd');
+}
+
 /// Fonts and the like, which Matroska holds by name and kind.
 bool is_attachment(const AVOutputFormat& format, const AVStream& from) {
   return from.codecpar->codec_type == AVMEDIA_TYPE_ATTACHMENT && std::string_view(format.name) == "matroska" &&
@@ -156,10 +163,9 @@ Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagn
         (what == Copied::all_but_sound && kind == AVMEDIA_TYPE_AUDIO))
       continue;
     AFTERGLOW_TRY(const AVStream* to, add_stream(i));
-    const bool timecode = from.codecpar->codec_tag == MKTAG('t', 'm', 'c', 'd');  // told by a tag
     if (to)
       target_[i] = to->index;
-    else if (!timecode)
+    else if (!is_told_elsewhere(from))
       left.push_back(stream_name(from, i));
   }
   if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
@@ -175,9 +181,14 @@ Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagn
 
 std::string FfmpegCopy::time_code() const { return first_time_code(*input_); }
 
-int FfmpegCopy::disposition_of_pictures() const {
+void FfmpegCopy::describe_pictures(AVStream& to) const {
   const int index = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
-  return index < 0 ? 0 : input_->streams[index]->disposition & ~AV_DISPOSITION_ATTACHED_PIC;
+  if (index < 0) return;
+  const AVStream& from = *input_->streams[index];
+  to.disposition = from.disposition & ~AV_DISPOSITION_ATTACHED_PIC;
+  for (const char* key : {"language", "title"})
+    if (const AVDictionaryEntry* found = av_dict_get(from.metadata, key, nullptr, 0))
+      av_dict_set(&to.metadata, key, found->value, 0);
 }
 
 /// As far as they lie in the range.

@@ -34,8 +34,8 @@ class FfmpegCopy {
 
   /// Of the first picture in the file; empty: it has none.
   std::string time_code() const;
-  /// What its pictures are marked as: AV_DISPOSITION_….
-  int disposition_of_pictures() const;
+  /// What its pictures are marked as, their language and title.
+  void describe_pictures(AVStream& to) const;
   /// Writes what comes before `until` (microseconds of the output's clock).
   Result<void> copy(std::int64_t until);
 

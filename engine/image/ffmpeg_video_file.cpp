@@ -57,7 +57,7 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   const CopyRange& range = sound_only ? plan_.audio_range : plan_.range;
   const Copied what = sound_only ? Copied::sound : plan_.silent ? Copied::all_but_sound : Copied::all;
   AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, what, *output_, range, plan_.patience, name, diagnostics));
-  if (!sound_only) stream_->disposition = copy_->disposition_of_pictures();
+  if (!sound_only) copy_->describe_pictures(*stream_);
   return {};
 }
 

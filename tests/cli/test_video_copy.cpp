@@ -72,6 +72,25 @@ TEST_F(VideoOut, NoSoundIsCopiedWhereNoneIsAskedFor) {
   EXPECT_EQ(make_video("sequence.mp4", {"--audio", "none"}).exit_code, kDone);
 }
 
+/// Names of chapters lie in a track of their own in MOV and MP4, which is no loss.
+TEST_F(VideoOut, ChaptersOfQuickTimeAndTheLanguageOfPicturesStay) {
+  make_frames(24);
+  write("chapters.txt", ";FFMETADATA1\n[CHAPTER]\nTIMEBASE=1/1000\nSTART=0\nEND=1000\ntitle=one\n");
+  for (const std::string name : {"in.mov", "in.mp4"}) {
+    ASSERT_EQ(
+        shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -i chapters.txt -map 0 -map_chapters 1 "
+              "-metadata:s:v language=fra -c:v libx264 -pix_fmt yuv420p " +
+              name)
+            .exit_code,
+        0);
+    const Outcome outcome = run({"run", "look.lua", name, "-o", "out.mov"});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.err, IsEmpty());
+    EXPECT_EQ(probe("out.mov", "-show_chapters").at("chapters").at(0).at("tags").at("title"), "one");
+    EXPECT_EQ(stream_of("out.mov").at("tags").at("language"), "fra");
+  }
+}
+
 /// Times, sound, subtitles and chapters of a video stay with it.
 TEST_F(VideoOut, VideoToVideo) {
   make_frames(40);
