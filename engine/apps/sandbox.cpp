@@ -7,7 +7,6 @@
 #include "core/paths.h"
 #include "core/temporary.h"
 #include "core/text.h"
-#include "image/video_output.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -86,7 +85,7 @@ Result<Confinement> sandbox_of(const RunArguments& a) {
   };
   for (const auto& input : a.files.inputs) picture(input);
   if (!a.layers.mattes.empty()) picture(a.layers.mattes);
-  if (!a.audio.empty() && a.audio != kNoAudio) left.read.emplace_back(a.audio);
+  if (!a.audio.empty()) left.read.emplace_back(a.audio);
   for (const auto* layer : {&a.layers.depth, &a.layers.normal, &a.layers.motion})
     if (const LayerChoice choice = parse_layer_choice(*layer); !choice.file.empty()) picture(choice.file.string());
   for (const auto& output : {a.files.output, a.report, a.lock}) add_output(left, output);
