@@ -186,7 +186,7 @@
 ---@field iterations? integer|afterglow.Moving  Halvings of the picture; each doubles the blur. 0: none. integer 0…12, default 3
 ---@field offset? number|afterglow.Moving  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. In 1024ths of a pixel. 0…3, default 1
 
----Draws lines where brightness changes: Sobel, Scharr or Roberts.
+---Draws lines where brightness changes, of black to display white: Sobel, Scharr or Roberts.
 ---@class afterglow.settings.edge_detection : afterglow.EntryKeys
 ---@field operator? "sobel"|"scharr"|"roberts"|afterglow.OfTime  sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines. default "sobel"
 ---@field intensity? number|afterglow.Moving  Factor of the gradient. 0: no lines. 0…100, default 2
@@ -295,7 +295,7 @@
 ---The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@class afterglow.settings.lift_gamma_gain : afterglow.EntryKeys
 ---@field lift? number[]|string|afterglow.Moving  Colour of lift; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field lift_offset? number|afterglow.Moving  Light added everywhere; shows most in the darks. -1…1, default 0
+---@field lift_offset? number|afterglow.Moving  Light added everywhere; shows most in the darks. What it takes below black is black. -1…1, default 0
 ---@field gamma? number[]|string|afterglow.Moving  Colour of gamma; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field gamma_offset? number|afterglow.Moving  Above 0 lightens the middle, below 0 darkens it; black and 1 stay, and light above 1 goes the other way. -1…1, default 0
 ---@field gain? number[]|string|afterglow.Moving  Colour of gain; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
@@ -426,7 +426,7 @@
 ---Brings scene-linear light into display range.
 ---@class afterglow.settings.tone_mapping : afterglow.EntryKeys
 ---@field mode? "none"|"aces"|"neutral"|"reinhard"|"reinhard_extended"|"agx"|"khronos_neutral"|"hable"|"gt"|afterglow.OfTime  Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve as Unity has it, white at 4. reinhard: x/(1+x), soft and flat. reinhard_extended: on luminance, with a white point. agx: bright saturated light bleaches as on film. khronos_neutral: base colours stay, for products. hable: a toe, a line and a shoulder of one's own. gt: light around middle grey stays as it is. default "aces"
----@field exposure? number|afterglow.Moving  Light times 2^exposure before the curve; bloom and other effects before it do not see it. -16…16 EV, default 0
+---@field exposure? number|afterglow.Moving  Light times 2^exposure before the curve; bloom and other effects before it do not see it. With the curve none nothing is done. -16…16 EV, default 0
 ---@field white? number|afterglow.Moving  reinhard_extended, hable: the light that becomes white (hable: at least about 1). 0.5…1000, default 8
 ---@field full_white? boolean|afterglow.OfTime  aces, reinhard: their brightest white is 0.945 and 0.984 of the display's; this makes it 1. default false
 ---@field look? "base"|"punchy"|"golden"|afterglow.OfTime  agx: base as it is, punchy with more contrast and colour, golden warm and light. default "base"
@@ -536,7 +536,7 @@
 ---@field depth_of_field fun(settings: afterglow.settings.depth_of_field): afterglow.Entry  Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@field directional_blur fun(settings: afterglow.settings.directional_blur): afterglow.Entry  Smears the picture along one direction, as a moving camera does.
 ---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
----@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes: Sobel, Scharr or Roberts.
+---@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes, of black to display white: Sobel, Scharr or Roberts.
 ---@field exposure fun(settings: afterglow.settings.exposure): afterglow.Entry  Exposure of the scene, in stops; before the bloom and the tone curve.
 ---@field film_grain fun(settings: afterglow.settings.film_grain): afterglow.Entry  Grain of film: fine noise, new in each frame; best after tone mapping.
 ---@field firefly_stabilisation fun(settings: afterglow.settings.firefly_stabilisation): afterglow.Entry  Takes down single bright pixels that flash up in one frame of a sequence.

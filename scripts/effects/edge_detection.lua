@@ -10,7 +10,7 @@ end
 
 return fx.effect {
   name = "edge_detection",
-  doc = "Draws lines where brightness changes: Sobel, Scharr or Roberts.",
+  doc = "Draws lines where brightness changes, of black to display white: Sobel, Scharr or Roberts.",
   at = "after_post_process", order = 105, detail = true, space = "display",
   settings = {
     operator = fx.enum { "sobel", "scharr", "roberts", default = "sobel",

@@ -59,7 +59,7 @@ return fx.effect {
   doc = "The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.",
   at = "post_process", order = 180, space = "scene", alpha = "straight",
   settings = {
-    lift = wheel("lift"), lift_offset = ring("Light added everywhere; shows most in the darks."),
+    lift = wheel("lift"), lift_offset = ring("Light added everywhere; shows most in the darks. What it takes below black is black."),
     gamma = wheel("gamma"), gamma_offset = ring("Above 0 lightens the middle, below 0 darkens it; black and 1 stay, and light above 1 goes the other way."),
     gain = wheel("gain"), gain_offset = ring("Light times 1 + this; shows most in the brights."),
   },

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 -- Sharpening that adapts to contrast: AMD FidelityFX CAS (T. Lottes, 2019), with the two knobs that ReShade's version gives it. Edges that
--- are strong already get little, so that halos stay small and nothing clips; light above display white gets none.
+-- are strong already get little, so that halos stay small; light above display white gets none.
 local fx = require "afterglow"
 
 return fx.effect {

@@ -50,7 +50,7 @@ return fx.effect {
   settings = {
     mode = fx.enum { "none", "aces", "neutral", "reinhard", "reinhard_extended", "agx", "khronos_neutral", "hable", "gt", default = "aces",
       doc = "Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve as Unity has it, white at 4. reinhard: x/(1+x), soft and flat. reinhard_extended: on luminance, with a white point. agx: bright saturated light bleaches as on film. khronos_neutral: base colours stay, for products. hable: a toe, a line and a shoulder of one's own. gt: light around middle grey stays as it is." },
-    exposure = fx.float { min = -16, max = 16, default = 0, unit = "EV", doc = "Light times 2^exposure before the curve; bloom and other effects before it do not see it." },
+    exposure = fx.float { min = -16, max = 16, default = 0, unit = "EV", doc = "Light times 2^exposure before the curve; bloom and other effects before it do not see it. With the curve none nothing is done." },
     white = fx.float { min = 0.5, max = 1000, default = 8, doc = "reinhard_extended, hable: the light that becomes white (hable: at least about 1)." },
     full_white = fx.bool { default = false, doc = "aces, reinhard: their brightest white is 0.945 and 0.984 of the display's; this makes it 1." },
     look = fx.enum { "base", "punchy", "golden", default = "base", doc = "agx: base as it is, punchy with more contrast and colour, golden warm and light." },
