@@ -4,6 +4,7 @@
 #include <array>
 
 #include "reference/color.h"
+#include "reference/resample.h"
 
 namespace afterglow::reference {
 
@@ -69,7 +70,9 @@ DoubleImage bloom_scaled(const DoubleImage& source, int height) {
   while (image.height >= 2 * wanted.height && image.width >= 2 * wanted.width)
     image = resized(image, half(image.size()), 1, 1);
   if (image.size() == wanted) return image;
-  const auto reads = [](int from, int to) { return from <= to ? 1 : (2 * from + to - 1) / to; };
+  const auto reads = [](int from, int to) {
+    return static_cast<int>(mean_over(static_cast<double>(from) / to).size());
+  };
   return resized(image, wanted, reads(image.width, wanted.width), reads(image.height, wanted.height));
 }
 

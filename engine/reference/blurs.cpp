@@ -42,17 +42,6 @@ Filter pieces(int count, double spacing, glm::dvec2 step) {
   return of_taps(std::move(taps));
 }
 
-/// Mean over `ratio` texels along an axis, 1 or more: each once where they are whole, else twice as many reads as
-/// texels.
-std::vector<Tap> mean_over(double ratio) {
-  if (ratio <= 1) return {{0, 1}};
-  const bool whole = ratio == std::floor(ratio);
-  const int n = static_cast<int>(whole ? ratio : std::ceil(2 * ratio));
-  std::vector<Tap> taps;
-  for (int i = 0; i < n; ++i) taps.push_back({(i - (n - 1) / 2.0) * ratio / n, 1.0 / n});
-  return taps;
-}
-
 DoubleImage with_alpha_of(const DoubleImage& picture, DoubleImage image) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i].a = picture.pixels[i].a;
   return image;

@@ -65,7 +65,7 @@ DoubleImage fxaa(const DoubleImage& source, const Fxaa& s) {
     if (std::abs(at(-across.x, -across.y) - m) >= std::abs(at(across.x, across.y) - m)) across = {-across.x, -across.y};
     const double other = at(across.x, across.y);
 
-    const double edge = (m + other) / 2, threshold = std::abs(other - m) / 4;
+    const double edge = (m + other) / 2, threshold = std::abs(other - m) / 4 - 1e-5;  // the same
     const double edge_x = x + 0.5 + 0.5 * across.x, edge_y = y + 0.5 + 0.5 * across.y;
     const End p = find_end(luma, edge_x, edge_y, along, edge, threshold, steps);
     const End q = find_end(luma, edge_x, edge_y, {-along.x, -along.y}, edge, threshold, steps);

@@ -38,21 +38,23 @@ DoubleImage resample(const DoubleImage& source, Size size, const Filter& filter)
   });
 }
 
+std::vector<Tap> mean_over(double ratio) {
+  if (ratio <= 1) return {{0, 1}};
+  const bool whole = ratio == std::floor(ratio);
+  const int n = static_cast<int>(whole ? ratio : std::ceil(2 * ratio));
+  std::vector<Tap> taps;
+  for (int i = 0; i < n; ++i) taps.push_back({(i - (n - 1) / 2.0) * ratio / n, 1.0 / n});
+  return taps;
+}
+
 DoubleImage resized_to(DoubleImage image, Size size) {
   for (Size half = halved(image.size()); half.width >= size.width && half.height >= size.height && half != image.size();
        half = halved(half))
     image = resample(image, half, {});
   if (image.size() == size) return image;
-  const auto area = [](int from, int to) {
-    const double ratio = static_cast<double>(from) / to;
-    const int count = ratio > 1 ? static_cast<int>(std::ceil(2 * ratio)) : 1;
-    std::vector<Tap> taps;
-    for (int i = 0; i < count; ++i) taps.push_back({((i + 0.5) / count - 0.5) * ratio, 1.0 / count});
-    return taps;
-  };
   Filter filter;
-  filter.x = area(image.width, size.width);
-  filter.y = area(image.height, size.height);
+  filter.x = mean_over(static_cast<double>(image.width) / size.width);
+  filter.y = mean_over(static_cast<double>(image.height) / size.height);
   return resample(image, size, filter);
 }
 

@@ -84,7 +84,8 @@ vec4 sample_at(ivec2 pixel) {
   bool forward = abs(ahead - m) > abs(behind - m);
   float other = forward ? ahead : behind;
 
-  float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m), change_p, change_n;
+  // Half-way between two places luma often differs by just as much.
+  float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m) - 1e-5, change_p, change_n;
   ivec2 over = horizontal ? ivec2(0, 1) : ivec2(1, 0), next = 1 - over;
   ivec2 from = forward ? pixel : pixel - over;  // the upper or left one of the two sides
   float way_p = way_to_end(from, over, next, false, edge, enough, change_p);

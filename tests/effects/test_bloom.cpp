@@ -175,6 +175,7 @@ TEST_F(Effects, BloomAtAReferenceHeightAgrees) {
     for (const bool fireflies : {false, true})
       check(random_scene({240, 135}, 11, true), {.fade_fireflies = fireflies, .reference_height = height});
   check(random_scene({101, 57}, 12), {.mode = BloomMode::scattering, .downscale_limit = 1, .reference_height = 20});
+  check(random_scene({51, 108}, 13), {.downscale_limit = 1, .reference_height = 54});  // half as high, to an odd width
 }
 
 TEST_F(Effects, BloomHoldsWildPixels) {

@@ -105,6 +105,19 @@ TEST_F(Effects, FxaaAgrees) {
   agree_everywhere({smoothed({}), smoothed({.subpixel_blending = 0, .quality = FxaaQuality::low}),
                     smoothed({.fixed_threshold = 0.0312, .relative_threshold = 0.063, .quality = FxaaQuality::medium})},
                    kDecisions);
+  // Two flat tones: between two steps of an edge luma is off by just what is looked for.
+  for (const double bright : {0.2, 0.5, 0.9, 1.0}) {
+    const Scene scene{
+        "tones",
+        generate({90, 40}, [&](int x, int y) { return Rgba(Rgb(y > 6 + x / 7 && x < 70 + y / 5 ? bright : 0.05), 1); }),
+        {},
+        {}};
+    for (const FxaaQuality quality : {FxaaQuality::low, FxaaQuality::medium, FxaaQuality::high}) {
+      const EffectCase one = smoothed({.quality = quality});
+      EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::plain).result, one.oracle(scene), kFullFloat, kRgba))
+          << one.entries << bright;
+    }
+  }
 }
 
 TEST_F(Effects, FxaaSmoothsASlantAndKeepsFlatPlaces) {
