@@ -240,11 +240,13 @@ Result<void> tell_gaps(const std::string& input, const std::vector<FrameFile>& f
   return {};
 }
 
-SequencePart part_of(const Pattern& pattern, const std::vector<int>& frames) {
+/// `places`: frames of the video that is made of it.
+SequencePart part_of(const Pattern& pattern, const std::vector<int>& frames, std::size_t places) {
   const auto all = find_frames(pattern, std::nullopt);
   if (!all || all->empty() || frames.empty()) return {};
   const auto [first, last] = std::ranges::minmax(frames);
-  return {std::max(first - all->front().frame, 0), last < all->back().frame ? last + 1 - first : 0};
+  const bool to_the_end = last >= all->back().frame && places == static_cast<std::size_t>(last + 1 - first);
+  return {std::max(first - all->front().frame, 0), to_the_end ? 0 : static_cast<int>(places)};
 }
 
 Result<void> add_files(const FrameListRequest& request, const OutputNames& names, const std::string& input,
@@ -275,8 +277,8 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     list.jobs.push_back(std::move(job));
   }
   if (pattern.numbered && (!frames || request.holds) && held) hold_missing(list.jobs);
-  if (frames && held) {
-    const SequencePart part = part_of(pattern, *frames);
+  if (frames && held && !list.jobs.empty()) {
+    const SequencePart part = part_of(pattern, *frames, list.jobs.size() + list.jobs.back().missing);
     for (FrameJob& job : list.jobs) job.part = part;
   }
   return {};

@@ -61,9 +61,7 @@ void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& p
   if (facts.rate.numerator > 0) plan.rate = facts.rate;
   // Matroska rounds to milliseconds, with which every other container would tell of a rate that changes.
   if (const auto rate = movie_->even_rate(); rate && !ticks(facts.time_base, *rate)) {
-    even_ = true;
-    plan.rate = *rate;
-    plan.time_base = {rate->denominator, rate->numerator};
+    use_even(*rate, plan);
   }
   if (!facts.pictures_alone) plan.source = movie_->file();
   const auto microseconds = [&](long long pts) {
@@ -82,6 +80,21 @@ void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& p
   plan.audio_range = range_from(running ? facts.pts.front() : 0);
 }
 
+/// Whole frames are units of the clock, or thousands of them where the first does not begin with one.
+void VideoTimes::use_even(const Rational& rate, VideoPlan& plan) {
+  constexpr int kFine = 1000, kMost = 1'000'000;
+  const MovieFacts& facts = movie_->facts();
+  const double unit = static_cast<double>(facts.time_base.numerator) / facts.time_base.denominator;
+  const double frames = static_cast<double>(facts.pts[static_cast<std::size_t>(first_)] - start_) * unit *
+                        rate.numerator / rate.denominator;
+  const double rounding = unit * rate.numerator / rate.denominator;
+  const bool whole = std::abs(frames - std::round(frames)) <= rounding || rate.numerator > kMost;
+  ticks_ = whole ? 1 : kFine;
+  late_ = std::llround(frames * static_cast<double>(ticks_));
+  plan.rate = rate;
+  plan.time_base = {rate.denominator, rate.numerator * static_cast<int>(ticks_)};
+}
+
 Result<VideoTime> VideoTimes::of(const FrameJob& job, std::size_t index) {
   if (has_times(job) != static_cast<bool>(movie_) || (movie_ && job.movie != movie_)) return of_one();
   // Frames that failed before the first one that came are held by it.
@@ -95,7 +108,7 @@ VideoTime VideoTimes::time_of(int frame) {
   const auto at = static_cast<std::size_t>(frame);
   last_ = frame;
   whole_ = at + 1 == pts.size();
-  if (even_) return {frame - first_, 1};
+  if (ticks_ > 0) return {late_ + static_cast<long long>(frame - first_) * ticks_, ticks_};
   return {pts[at] - start_, whole_ ? length_of_last(movie_->facts()) : pts[at + 1] - pts[at]};
 }
 

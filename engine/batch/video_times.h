@@ -28,12 +28,14 @@ class VideoTimes {
 
  private:
   Error of_one() const;
+  void use_even(const Rational& rate, VideoPlan& plan);
   VideoTime time_of(int frame);  ///< which is the last one from now on
 
   std::filesystem::path file_;
   Rational rate_;
   std::shared_ptr<Movie> movie_;  ///< that the frames come from
-  bool even_ = false;             ///< its frames come evenly, but for the roundings of its clock
+  long long ticks_ = 0;           ///< of a frame, where they come evenly but for the roundings of its clock; else 0
+  long long late_ = 0;            ///< of those, before the first one shows
   int first_ = 0;                 ///< its first frame that is written
   long long start_ = 0;           ///< time stamp of that
   int last_ = -1;                 ///< its frame that was written last

@@ -157,9 +157,10 @@ std::optional<Rational> even_rate_of(const MovieFacts& of, double fps) {
   const double tick = static_cast<double>(of.time_base.numerator) / of.time_base.denominator;
   for (const Rational rate : {frame_rate(fps), of.rate}) {
     const double step = static_cast<double>(rate.denominator) / rate.numerator / tick;
-    bool even = step >= 2;
+    const double rounding = step >= 2 ? 1.001 : 0.001;  // a clock may tick once a frame
+    bool even = step >= 1;
     for (std::size_t i = 1; even && i < of.pts.size(); ++i)
-      even = std::abs(static_cast<double>(of.pts[i] - of.pts.front()) - static_cast<double>(i) * step) <= 1.001;
+      even = std::abs(static_cast<double>(of.pts[i] - of.pts.front()) - static_cast<double>(i) * step) <= rounding;
     if (even) return rate;
   }
   return std::nullopt;

@@ -19,16 +19,25 @@ double blurred_by(double radius, int factor) {
   return glm::clamp((std::abs(radius) - 0.5) / (1.15 * factor - 0.5), 0.0, 1.0);
 }
 
-/// The light of those whose circles are like the widest, and that circle, over `scale`. A circle counts as at least
-/// `least` wide.
-Rgba like_the_widest(const std::vector<Rgba>& pixels, double least, double scale) {
+double widest_of(const std::vector<Rgba>& pixels) {
   double widest = 0;
   for (const Rgba& p : pixels)
     if (std::abs(p.a) > std::abs(widest) || (std::abs(p.a) == std::abs(widest) && p.a < 0)) widest = p.a;
+  return widest;
+}
+
+double likeness(const Rgba& pixel, double widest, double least) {
+  return glm::clamp(1.5 - 2 * std::abs(pixel.a - widest) / glm::max(std::abs(widest), least), 0.0, 1.0);
+}
+
+/// The light of those whose circles are like the widest, and that circle, over `scale`. A circle counts as at least
+/// `least` wide.
+Rgba like_the_widest(const std::vector<Rgba>& pixels, double least, double scale) {
+  const double widest = widest_of(pixels);
   Rgb sum(0);
   double weights = 0;
   for (const Rgba& p : pixels) {
-    const double weight = glm::clamp(1.5 - 2 * std::abs(p.a - widest) / glm::max(std::abs(widest), least), 0.0, 1.0);
+    const double weight = likeness(p, widest, least);
     sum += weight * Rgb(p);
     weights += weight;
   }
@@ -88,25 +97,30 @@ int level_for(double radius, int samples) {
   return texels > 4 * samples ? 2 : texels > samples ? 1 : 0;
 }
 
-double before_means(double radius, int level) {
-  return std::sqrt(glm::max(radius * radius - (3 + (1 << (2 * level))) / 3.0, 0.0));
-}
+double before_means(double radius) { return std::sqrt(glm::max(radius * radius - 4.0 / 3, 0.0)); }
 
 struct Pyramid {
   std::vector<DoubleImage> levels;
+  std::vector<DoubleImage> middles;  ///< where in its texel the light lies, from the centre (r, g)
 
   /// `finest`: in place of each texel, the pixel of the finest level in its middle.
-  /// f(texel, offset of its centre from the pixel's) for the texels of a level that pixel (x, y) reads: every second
-  /// row and column, others than its neighbours.
+  /// f(texel, offset of its light from the pixel's centre) for the texels of a level that pixel (x, y) reads: every
+  /// second row and column, others than its neighbours.
   template <class F>
   void visit(int x, int y, int level, double reach, F&& f, bool finest = false) const {
     const DoubleImage& image = levels[static_cast<std::size_t>(level)];
     const int texel = 1 << level, far = static_cast<int>(std::ceil(reach)) + texel;
     for (int v = (y - far) >> level; v <= (y + far) >> level; ++v)
       for (int u = (x - far) >> level; u <= (x + far) >> level; ++u)
-        if (((u - y) & 1) == 0 && ((v - x - y) & 1) == 0)
-          f(finest ? levels[0].clamped(u * texel + texel / 2, v * texel + texel / 2) : image.clamped(u, v),
-            Point((u + 0.5) * texel - x - 0.5, (v + 0.5) * texel - y - 0.5));
+        if (((u - y) & 1) == 0 && ((v - x - y) & 1) == 0) {
+          const Point centre((u + 0.5) * texel - x - 0.5, (v + 0.5) * texel - y - 0.5);
+          const Rgba& middle = middles[static_cast<std::size_t>(level)].clamped(u, v);
+          if (finest) {
+            f(levels[0].clamped(u * texel + texel / 2, v * texel + texel / 2), centre);
+          } else {
+            f(image.clamped(u, v), centre + Point(middle.r, middle.g));
+          }
+        }
   }
 };
 
@@ -120,12 +134,28 @@ Pyramid pyramid_of(const DoubleImage& source, const DoubleImage& circles, int fa
         pixels.emplace_back(Rgb(source.clamped(i, j)), circles.clamped(i, j).r);
     return like_the_widest(pixels, 1, factor);
   }));
+  pyramid.middles.emplace_back(small, Rgba(0));
   for (int level = 1; level < 3; ++level) {
-    const DoubleImage& finer = pyramid.levels.back();
-    pyramid.levels.push_back(generate({(finer.width + 1) / 2, (finer.height + 1) / 2}, [&](int x, int y) {
+    const DoubleImage finer = pyramid.levels.back(), middles = pyramid.middles.back();
+    const auto four_of = [&](const DoubleImage& image, int x, int y) {
       std::vector<Rgba> four;
-      for (int i = 0; i < 4; ++i) four.push_back(finer.clamped(2 * x + i % 2, 2 * y + i / 2));
-      return like_the_widest(four, 0.5, 1);
+      for (int i = 0; i < 4; ++i) four.push_back(image.clamped(2 * x + i % 2, 2 * y + i / 2));
+      return four;
+    };
+    const Size size{(finer.width + 1) / 2, (finer.height + 1) / 2};
+    pyramid.levels.push_back(
+        generate(size, [&](int x, int y) { return like_the_widest(four_of(finer, x, y), 0.5, 1); }));
+    pyramid.middles.push_back(generate(size, [&](int x, int y) {
+      const auto four = four_of(finer, x, y), inner = four_of(middles, x, y);
+      const double widest = widest_of(four), apart = level == 1 ? 0.5 : 1;
+      Point sum(0);
+      double lights = 0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double light = (glm::max(luminance(Rgb(four[i])), 0.0) + 1e-6) * likeness(four[i], widest, 0.5);
+        sum += light * (Point(inner[i].r, inner[i].g) + apart * Point(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1));
+        lights += light;
+      }
+      return Rgba(sum / lights, 0, 0);
     }));
   }
   return pyramid;
@@ -138,7 +168,7 @@ DoubleImage far_field(const Pyramid& pyramid, const Iris& iris, int factor) {
     const bool hidden = own.a < 0;
     const double circle = std::abs(own.a), weight = glm::max(blurred_by(circle * factor, factor), 1.0 / 4096);
     const int level = glm::min(level_for(circle, iris.s.samples) + (hidden ? 1 : 0), 2);
-    const double radius = before_means(circle, level);
+    const double radius = before_means(circle);
     if (radius <= 0) return Rgba(Rgb(own), 1) * weight;
     Rgba sum(0);
     pyramid.visit(
@@ -182,7 +212,7 @@ DoubleImage near_field(const Pyramid& pyramid, const Iris& iris, int factor) {
     const double split = 2 << coarsest;  // below it the finest level is read, and of half of it nothing else
     Rgba sum(0);
     const auto add = [&](int level, double upto, auto&& share) {
-      const double shrink = before_means(around, level) / around;
+      const double shrink = before_means(around) / around;
       pyramid.visit(x, y, level, upto * shrink + iris.soft() / 2, [&](const Rgba& read, Point offset) {
         const double circle = glm::max(-read.a, 0.0), radius = glm::max(circle * shrink, iris.soft() / 2);
         const double counts = iris.disc(radius, iris.radius_of(offset, x, y, small.size())) *

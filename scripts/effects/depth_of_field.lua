@@ -59,11 +59,12 @@ return fx.effect {
     local third = g:pass { shader = "depth_of_field/half", source = second, size = { (second.width + 1) // 2, (second.height + 1) // 2 }, name = "third" }
     local pyramid = g:pass { shader = "depth_of_field/pyramid", source = small, second = second, third = third,
                              size = { size[1] + second.width, math.max(size[2], second.height + third.height) }, name = "pyramid" }
+    local middles = g:pass { shader = "depth_of_field/middles", source = pyramid, small = size, size = { second.width, second.height + third.height }, channels = 2, name = "middles" }
     -- The sides of the iris, each by the direction from its middle outwards; 1/cos(π/blades) makes its corners lie on the circle.
     local blades, side = s.blades, 2 * math.pi / math.max(s.blades, 3)
     local first, outwards = s.rotation * math.pi / 180 + side / 2, 1 / math.cos(side / 2)
     local function through_lens(pass)
-      pass.source, pass.size, pass.small, pass.blades, pass.has_tube, pass.cat_eye, pass.samples, pass.factor = pyramid, size, size, blades, s.cat_eye > 0, s.cat_eye, s.samples, factor
+      pass.source, pass.middles, pass.size, pass.small, pass.blades, pass.has_tube, pass.cat_eye, pass.samples, pass.factor = pyramid, middles, size, size, blades, s.cat_eye > 0, s.cat_eye, s.samples, factor
       pass.turns = { math.cos(first) * outwards, math.sin(first) * outwards, math.cos(side), math.sin(side) }
       pass.stretch = { math.max(1, s.squeeze), math.max(1, 1 / s.squeeze), 2 * math.max(s.squeeze, 1 / s.squeeze) }
       return g:pass(pass)

@@ -8,6 +8,7 @@ layout(constant_id = 0) const int blades = 0;  // 3 or more: straight sides
 layout(constant_id = 1) const bool has_tube = false;
 
 uniform sampler2D source;  // pyramid of the small picture, circles in alpha
+uniform sampler2D middles; // of the light of the coarse levels' texels, from their centres
 uniform ivec2 small;       // size of the small picture
 uniform float factor;
 uniform vec4 turns;
@@ -22,22 +23,24 @@ vec4 sample_at(ivec2 pixel) {
   bool hidden = own.a < 0.0;
   float circle = abs(own.a), weight = max(blurred(circle * factor, factor), 1.0 / 4096.0);
   int level = min(level_for(circle, samples) + (hidden ? 1 : 0), 2);  // what is seen around is read more sparsely
-  float radius = before_means(circle, level);
+  float radius = before_means(circle);
   if (radius <= 0.0) return vec4(own.rgb, 1.0) * weight;
   vec3 tube = tube_at(vec2(pixel) + 0.5, vec2(small), cat_eye);
   float texel = float(1 << level), soft = stretch.z, reach = radius + 0.5 * soft, own_area = disc_area(radius, soft), per_circle = 1.0 / circle;
-  ivec2 last = last_texel(small, level), origin = origin_of(small, level), rows = rows_of(pixel, reach / stretch.y + 0.5 * (texel - 1.0), level);
+  ivec2 last = last_texel(small, level), origin = origin_of(small, level), rows = rows_of(pixel, reach / stretch.y, level);
   vec2 shift = (0.5 * texel - 0.5) - vec2(pixel);  // centres of texels, from the pixel's
   vec4 sum = vec4(0.0);
   for (int y = rows.x; y <= rows.y; y += 2) {
-    float down = (float(y) * texel + shift.y) * stretch.y;
-    ivec2 columns = columns_of(pixel, reach / stretch.x, down / stretch.x, level);
+    float down = float(y) * texel + shift.y;
+    ivec2 columns = columns_of(pixel, reach, down, stretch.xy, level);
     if (columns.x > columns.y) continue;
     for (int turn = 0, x = columns.x; turn < kMost; ++turn, x += 2) {
       // Coarse texels hold what is in front alone, where there is any: what is seen past it are single pixels of the finest level.
       ivec2 place = hidden ? clamp((ivec2(x, y) << level) + (1 << level) / 2, ivec2(0), small - 1) : origin + clamp(ivec2(x, y), ivec2(0), last);
       vec4 read = fetch(source, place);
-      float away = iris_radius(vec2((float(x) * texel + shift.x) * stretch.x, down), blades, turns, tube, has_tube);
+      vec2 from = vec2(float(x) * texel + shift.x, down);
+      if (level > 0 && !hidden) from += fetch(middles, place - ivec2(small.x, 0)).xy;
+      float away = iris_radius(from * stretch.xy, blades, turns, tube, has_tube);
       // Nothing reaches further than its own circle, nor further over this pixel than this pixel's. Smaller circles hold more light.
       float ratio = read.a * per_circle, held = hidden ? radius : clamp(ratio, 0.0, 1.0) * radius;
       float counts = hidden ? clamp(2.0 * ratio + 1.5, 0.0, 1.0)

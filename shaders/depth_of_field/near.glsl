@@ -7,6 +7,7 @@ layout(constant_id = 0) const int blades = 0;  // 3 or more: straight sides
 layout(constant_id = 1) const bool has_tube = false;
 
 uniform sampler2D source;  // pyramid of the small picture, circles in alpha
+uniform sampler2D middles; // of the light of the coarse levels' texels, from their centres
 uniform sampler2D widest;  // circle in front of the focus around, by tile
 uniform float tiles;       // in a pixel: 1 / their side
 uniform ivec2 small;       // size of the small picture
@@ -28,19 +29,22 @@ vec4 sample_at(ivec2 pixel) {
   // Circles that are small beside a coarse level's texels are read from the finest one.
   for (int level = coarsest; level >= 0; level = level > 0 ? 0 : -1) {
     float texel = float(1 << level), split = coarsest > 0 ? float(2 << coarsest) : 1.0;
-    float shrink = before_means(around, level) / around, reach = max((level < coarsest ? split : around) * shrink, 0.5 * soft) + 0.5 * soft;
+    float shrink = before_means(around) / around, reach = max((level < coarsest ? split : around) * shrink, 0.5 * soft) + 0.5 * soft;
     float from = level < coarsest ? 2.0 : coarsest > 0 ? -1.0 : 1.0, slope = level < coarsest ? -2.0 / split : coarsest > 0 ? 2.0 / split : 0.0;
-    ivec2 last = last_texel(small, level), origin = origin_of(small, level), rows = rows_of(pixel, reach / stretch.y + 0.5 * (texel - 1.0), level);
+    ivec2 last = last_texel(small, level), origin = origin_of(small, level), rows = rows_of(pixel, reach / stretch.y, level);
     vec2 shift = (0.5 * texel - 0.5) - vec2(pixel);  // centres of texels, from the pixel's
     vec4 level_sum = vec4(0.0);
     for (int y = rows.x; y <= rows.y; y += 2) {
-      float down = (float(y) * texel + shift.y) * stretch.y;
-      ivec2 columns = columns_of(pixel, reach / stretch.x, down / stretch.x, level);
+      float down = float(y) * texel + shift.y;
+      ivec2 columns = columns_of(pixel, reach, down, stretch.xy, level);
       if (columns.x > columns.y) continue;
       for (int turn = 0, x = columns.x; turn < kMost; ++turn, x += 2) {
-        vec4 read = fetch(source, origin + clamp(ivec2(x, y), ivec2(0), last));
+        ivec2 place = origin + clamp(ivec2(x, y), ivec2(0), last);
+        vec4 read = fetch(source, place);
+        vec2 from_here = vec2(float(x) * texel + shift.x, down);
+        if (level > 0) from_here += fetch(middles, place - ivec2(small.x, 0)).xy;
         float circle = max(-read.a, 0.0), radius = max(circle * shrink, 0.5 * soft);
-        float away = iris_radius(vec2((float(x) * texel + shift.x) * stretch.x, down), blades, turns, tube, has_tube);
+        float away = iris_radius(from_here * stretch.xy, blades, turns, tube, has_tube);
         float counts = disc(radius, away, soft) * blurred(circle * factor, factor) * clamp(from + circle * slope, 0.0, 1.0) / disc_area(radius, soft);
         level_sum += counts * vec4(read.rgb, 1.0);
         if (x + 2 > columns.y) break;  // behind the reads: CPU drivers take no turn to see that there are no more

@@ -24,9 +24,8 @@ vec4 sample_at(ivec2 pixel) {
     // The same for four pixels at once.
     ivec2 right = first + ivec2(1, 0), below = first + ivec2(0, 1), last = first + 1;
     vec4 circles = vec4(circle_at(first), circle_at(right), circle_at(below), circle_at(last));
-    float low = min(min(circles.x, circles.y), min(circles.z, circles.w)), high = max(max(circles.x, circles.y), max(circles.z, circles.w));
-    float widest = -low >= high ? low : high;
-    vec4 weights = clamp(1.5 - abs(circles - widest) * (2.0 / max(abs(widest), 1.0)), 0.0, 1.0);
+    float widest = widest_of(circles);
+    vec4 weights = like_widest(circles, widest, 1.0);
     vec3 sum = fetch(picture, first).rgb * weights.x + fetch(picture, right).rgb * weights.y + fetch(picture, below).rgb * weights.z +
                fetch(picture, last).rgb * weights.w;
     return vec4(sum / (weights.x + weights.y + weights.z + weights.w), widest * 0.5);

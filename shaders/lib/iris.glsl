@@ -50,20 +50,22 @@ int level_for(float radius, float samples) {
 }
 
 /// Radius of what the small picture's means make as wide as `radius` was: variances add up, r²/4 of a disc and 1/12 of a square's side².
-float before_means(float radius, int level) { return sqrt(max(radius * radius - float(3 + (1 << (2 * level))) * (1.0 / 3.0), 0.0)); }
+float before_means(float radius) { return sqrt(max(radius * radius - 4.0 / 3.0, 0.0)); }
 
 /// Where a level lies in the pyramid, and its last texel.
 ivec2 origin_of(ivec2 small, int level) { return ivec2(level > 0 ? small.x : 0, level > 1 ? (small.y + 1) >> 1 : 0); }
 ivec2 last_texel(ivec2 small, int level) { return ((small + (1 << level) - 1) >> level) - 1; }
 
 /// The first and last row of a level that a pixel reads, for discs that reach so far. Each of 2×2 neighbours has other rows and columns.
+/// The light of a texel may lie anywhere in it.
 ivec2 rows_of(ivec2 pixel, float reach, int level) {
-  ivec2 rows = (ivec2(pixel.y) + ivec2(-1, 1) * int(reach)) >> level;
+  ivec2 rows = (ivec2(pixel.y) + ivec2(-1, 1) * int(reach + float((1 << level) - 1))) >> level;
   return ivec2(rows.x + ((pixel.x + pixel.y - rows.x) & 1), rows.y);
 }
 
-/// The first and last column in a row that lies `away` pixels from the pixel.
-ivec2 columns_of(ivec2 pixel, float reach, float away, int level) {
-  ivec2 columns = (ivec2(pixel.x) + ivec2(-1, 1) * int(sqrt(max(reach * reach - away * away, 0.0)) + 0.5 * float((1 << level) - 1))) >> level;
+/// The first and last column in a row whose texels' centres lie `away` pixels from the pixel; `stretch`: of the iris, across and down.
+ivec2 columns_of(ivec2 pixel, float reach, float away, vec2 stretch, int level) {
+  float spread = float((1 << level) - 1), down = max(abs(away) - 0.5 * spread, 0.0) * stretch.y;
+  ivec2 columns = (ivec2(pixel.x) + ivec2(-1, 1) * int(sqrt(max(reach * reach - down * down, 0.0)) / stretch.x + spread)) >> level;
   return ivec2(columns.x + ((pixel.y - columns.x) & 1), columns.y);
 }

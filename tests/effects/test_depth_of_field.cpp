@@ -133,6 +133,25 @@ TEST_F(Effects, NoPatternShowsInDiscsOfAnyRadius) {
     }
 }
 
+/// It stood still for up to eight pixels, for coarse levels of the picture are read for wide discs.
+TEST_F(Effects, DiscsMoveWithTheirLight) {
+  for (const double depth : {1e4, 0.5})
+    for (const int radius : {12, 20, 30, 40, 64})
+      for (const int moved : {0, 1, 2, 3, 5, 6}) {
+        const int side = 2 * radius + 48;
+        const auto made = disc_of_a_point(side, moved, depth, fmt::format("max_radius = {}", radius)).result;
+        double sum = 0, x_sum = 0, y_sum = 0;
+        for (int y = 0; y < side; ++y)
+          for (int x = 0; x < side; ++x) {
+            const double v = made[4 * static_cast<std::size_t>(side * y + x)];
+            sum += v, x_sum += v * x, y_sum += v * y;
+          }
+        EXPECT_NEAR(sum, 45000, 450) << radius;
+        EXPECT_NEAR(x_sum / sum, side / 2 + moved + 1, 0.65) << radius << ' ' << moved << " at " << depth;
+        EXPECT_NEAR(y_sum / sum, side / 2 + moved + 1, 0.65) << radius << ' ' << moved << " at " << depth;
+      }
+}
+
 /// Extent of what is above half of the greatest value: across and down.
 std::pair<int, int> extent(const Made& made) {
   const int width = made.size.width;

@@ -196,8 +196,18 @@ TEST_F(RunVideos, RoundedTimesOfAnEvenVideoAreEvenAgain) {
   ffmpeg(fmt::format("-f lavfi -i testsrc=s=64x36:r=30000/1001:d=1.5 -c:v ffv1 \"{}\"", path("a.mkv")));
   ASSERT_EQ(shell("AFTERGLOW run look.lua a.mkv -o a.mov --codec prores"), 0) << said_;
   EXPECT_EQ(probed("stream=avg_frame_rate,time_base", "a.mov"), "30000/1001,1/30000");
+  ffmpeg(fmt::format("-itsoffset 0.51 -i \"{}\" -f lavfi -i sine=d=2 -c:v copy -c:a pcm_s16le \"{}\"", path("a.mkv"),
+                     path("late.mkv")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua late.mkv -o late.mov --codec prores"), 0) << said_;
+  EXPECT_EQ(probed("stream=avg_frame_rate", "late.mov", "v:0"), "30000/1001");
+  EXPECT_NEAR(std::stod(only_digits(probed("stream=start_time", "late.mov", "v:0"))), 0.51,
+              0.002);  // behind the sound's
   ASSERT_EQ(shell("AFTERGLOW run look.lua a.mkv -o part.mov --codec prores --frames 11-20"), 0) << said_;
   EXPECT_EQ(probed("stream=avg_frame_rate,duration_ts", "part.mov"), "30000/1001,10010");
+  ffmpeg(fmt::format("-i \"{}\" -c:v mjpeg \"{}\"", path("a.mkv"), path("a.avi")));
+  ASSERT_EQ(shell("AFTERGLOW run look.lua a.avi -o avi_####.png --frames 11-20"), 0) << said_;
+  ASSERT_EQ(shell("AFTERGLOW run look.lua avi_####.png -o avi.mov --codec prores"), 0) << said_;
+  EXPECT_EQ(probed("stream=avg_frame_rate", "avi.mov"), "30000/1001");
   for (const std::string format : {"exr", "png"}) {
     ASSERT_EQ(shell("AFTERGLOW run look.lua a.mkv -o still_####." + format + " --frames 11-20"), 0) << said_;
     ASSERT_EQ(shell("AFTERGLOW run look.lua still_####." + format + " -o " + format + ".mov --codec prores"), 0)
@@ -259,7 +269,8 @@ TEST_F(RunVideos, APartOfASequenceHasTheSoundOfThatPart) {
   expect("", 1, 2.5);
   expect(" --frames 1013-1036", 0.5, 1);
   expect(" --frames 1030-1040", 0, 11.0 / 24);
-  expect(" --frames 1025-1048", 0, 1.5);  // to the end of both
+  expect(" --frames 1025-1048", 0, 1.5);       // to the end of both
+  expect(" --frames 1013-1048x2", 0.5, 0.75);  // as long as the pictures
 }
 
 /// Chapters and subtitles end with the part; a subtitle that shows where it begins shows from there on.
