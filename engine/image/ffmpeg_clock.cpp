@@ -10,6 +10,7 @@ extern "C" {
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace afterglow {
 namespace {
@@ -37,10 +38,11 @@ std::vector<std::size_t> beginnings(AVRational time_base, std::span<const MovieP
   return out;
 }
 
-/// What shows before the first key cannot be decoded, as at the beginning of a file.
-void hide_orphans(std::span<MoviePacket> part) {
+/// What shows before the first key cannot be decoded, as at the beginning of a file; but a stream that runs on while
+/// its clock alone jumps is whole. `joined`: it does not run on.
+void hide_orphans(std::span<MoviePacket> part, bool joined) {
   const auto key = std::ranges::find(part, true, &MoviePacket::key);
-  if (key == part.end()) return;
+  if (key == part.end() || (key != part.begin() && !joined)) return;
   for (MoviePacket& packet : part)
     if (&packet < &*key || (is_known(packet.pts) && packet.pts < key->pts)) packet.shown = false;
 }
@@ -74,11 +76,13 @@ std::int64_t shift_behind(std::span<const MoviePacket> before, std::int64_t step
   return shift;
 }
 
-/// Where parts meet, counters of packets start anew as well, which looks like damage of the last picture; parsers say
-/// it of the one before. What is damaged indeed its decoder will say.
-void trust_last(std::span<MoviePacket> part) {
+/// Where parts are joined, counters of packets start anew as well, which looks like damage of the last picture; parsers
+/// say it of the one before. What is damaged indeed its decoder will say. Returns whether it looked so.
+bool trust_last(std::span<MoviePacket> part) {
   constexpr std::size_t kTold = 2;
-  for (MoviePacket& packet : part.last(std::min(kTold, part.size()))) packet.damaged = false;
+  bool told = false;
+  for (MoviePacket& packet : part.last(std::min(kTold, part.size()))) told |= std::exchange(packet.damaged, false);
+  return told;
 }
 
 void move(std::span<MoviePacket> part, std::int64_t shift) {
@@ -101,11 +105,10 @@ std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_
   for (std::size_t i = 1; i < begins.size(); ++i) {
     const std::size_t begin = begins[i], end = i + 1 < begins.size() ? begins[i + 1] : packets.size();
     const auto before = all.subspan(begins[i - 1], begin - begins[i - 1]), part = all.subspan(begin, end - begin);
-    hide_orphans(part);
+    hide_orphans(part, trust_last(before));
     const std::int64_t shift = shift_behind(before, step_of(before), part);
     const std::int64_t pos = std::max(parts.back().pos, part.front().pos);
     move(part, shift);
-    trust_last(before);
     parts.push_back({pos, av_rescale_q(shift, time_base, kMicroseconds)});
   }
   return parts;

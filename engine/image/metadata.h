@@ -47,6 +47,7 @@ struct FileFacts {
   std::string format;           ///< OpenImageIO's name of it: "openexr", "png", …
   int bits = 8;                 ///< of a colour sample
   bool floating = false;        ///< half or float samples
+  bool yuv = false;             ///< codes of a video, some of which lie beyond black and white
   bool keeps_negative = false;  ///< ReadOptions::keep_negative
   bool had_profile = false;     ///< an ICC profile was embedded
   bool had_chromaticities = false;

@@ -83,6 +83,7 @@ class MovieFrameFile : public PictureFile {
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
         facts.color_channels[i] = parts_.front().channels[static_cast<std::size_t>(color.channels[i])];
+    facts.yuv = !movie_->facts().color.rgb && !movie_->facts().floating;
     facts.metadata = metadata();
     return facts;
   }
@@ -151,18 +152,34 @@ Result<std::shared_ptr<MovieSource>> open_source(const MovieRequest& request) {
   return module ? (*module)->open(request) : Error{ErrorKind::io, module.error().message, name};
 }
 
-std::optional<Rational> even_rate_of(const MovieFacts& of, double fps) {
-  if (of.pts.size() < 2 || of.rate.numerator <= 0 || of.rate.denominator <= 0 || of.time_base.denominator <= 0)
-    return std::nullopt;
-  const double tick = static_cast<double>(of.time_base.numerator) / of.time_base.denominator;
-  for (const Rational rate : {frame_rate(fps), of.rate}) {
-    const double step = static_cast<double>(rate.denominator) / rate.numerator / tick;
-    const double rounding = step >= 2 ? 1.001 : 0.001;  // a clock may tick once a frame
-    bool even = step >= 1;
-    for (std::size_t i = 1; even && i < of.pts.size(); ++i)
-      even = std::abs(static_cast<double>(of.pts[i] - of.pts.front()) - static_cast<double>(i) * step) <= rounding;
-    if (even) return rate;
+/// Whether frames follow each other so, but for a rounding of each stamp to the clock's units; of an odd rate exactly.
+bool is_even(const MovieFacts& of, const Rational& rate) {
+  const bool usual = rate.denominator == 1 || rate.denominator == 1001;
+  const double unit = static_cast<double>(of.time_base.numerator) / of.time_base.denominator;
+  const double step = static_cast<double>(rate.denominator) / rate.numerator / unit;
+  double early = 0, late = 0;
+  for (std::size_t i = 0; i < of.pts.size(); ++i) {
+    const double off = static_cast<double>(of.pts[i] - of.pts.front()) - static_cast<double>(i) * step;
+    early = std::min(early, off);
+    late = std::max(late, off);
   }
+  return step >= 0.999 && late - early <= (usual && step >= 2 ? 1.001 : 0.001);  // a clock may tick once a frame
+}
+
+/// The usual rates first: an average may count a last frame whose length was guessed. `fps`: what the file says, or its
+/// average.
+std::optional<Rational> even_rate_of(const MovieFacts& of, double fps) {
+  if (of.pts.empty() || of.time_base.denominator <= 0 || (of.pts.size() == 1 && of.pictures_alone)) return std::nullopt;
+  std::vector<Rational> rates;
+  if (fps > 0) rates.push_back(frame_rate(fps));
+  if (const double length = seconds(of, of.pts.back() - of.pts.front()); length > 0) {
+    const double mean = static_cast<double>(of.pts.size() - 1) / length;
+    rates.push_back(frame_rate(std::round(mean)));
+    rates.push_back(frame_rate(std::round(mean * 1.001) / 1.001));
+  }
+  if (of.rate.numerator > 0 && of.rate.denominator > 0 && of.pts.size() > 1) rates.push_back(of.rate);
+  for (const Rational& rate : rates)
+    if (is_even(of, rate)) return rate;
   return std::nullopt;
 }
 

@@ -299,7 +299,7 @@ Rational simple_ratio(float ratio) {
 void keep_facts(const FileFacts& first, VideoPlan& plan, std::size_t held) {
   const MetadataValue* code = find_metadata(first.metadata, kTimeCodeName);
   plan.time_code = code ? metadata_text(*code) : "";
-  plan.pack.beyond = first.keeps_negative;
+  plan.pack.beyond = first.yuv && first.keeps_negative;
   if (held > 0) plan.time_code = time_code_after(plan.time_code, -static_cast<long long>(held), plan.rate);
   const Metadata kept = kept_metadata(first);
   if (const MetadataValue* aspect = find_metadata(kept, "PixelAspectRatio"))

@@ -10,14 +10,14 @@ end
 
 return fx.effect {
   name = "edge_detection",
-  doc = "Draws lines where brightness changes, of black to display white: Sobel, Scharr or Roberts.",
+  doc = "Draws lines where brightness changes: Sobel, Scharr or Roberts. All that is brighter than display white counts as white.",
   at = "after_post_process", order = 105, detail = true, space = "display",
   settings = {
     operator = fx.enum { "sobel", "scharr", "roberts", default = "sobel",
       doc = "sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines." },
     intensity = fx.float { min = 0, max = 100, default = 2, doc = "Factor of the gradient. 0: no lines." },
     threshold = fx.float { min = 0, max = 1, default = 0.05, doc = "Gradients up to this draw nothing." },
-    color = fx.color { default = { 0, 0, 0 }, doc = "Colour of the lines." },
+    color = fx.color { default = { 0, 0, 0 }, doc = "Colour of the lines. They end where the picture's alpha is 0." },
     background = fx.color { default = { 1, 1, 1 }, doc = "Colour between the lines." },
     background_opacity = fx.float { min = 0, max = 1, default = 0, doc = "0: lines over the picture. 1: lines over the background alone." },
   },

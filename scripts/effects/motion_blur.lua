@@ -2,8 +2,8 @@
 -- Motion blur from motion vectors, after M. McGuire, P. Hennessy, M. Bukowski, B. Osman, "A Reconstruction Filter for Plausible Motion Blur"
 -- (I3D 2012), J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare" (SIGGRAPH 2014), and J.-P. Guertin, M. McGuire,
 -- D. Nowrouzezahrai, "A Fast and Stable Feature-Aware Motion Blur Filter" (HPG 2014): a pixel is blurred along its own way, and what is in front
--- of it and moves otherwise comes along the longest way around, or along the one farthest aside of that. Every pixel of a way is read and counts for the part that the way covers, so that
--- nothing is left to chance: no grain where little moves, no stripes where much does. math.md §16.
+-- of it and moves otherwise comes along the longest way around, or along the one that leads farthest aside of that. Every pixel of a way is read and
+-- counts for the part that the way covers, so that nothing is left to chance: no grain where little moves, no stripes where much does. math.md §16.
 -- Motion is in pixels in one frame, x to the right and y up, as renderers write it (Blender's Vector pass, Nuke's forward.u and .v).
 local fx = require "afterglow"
 

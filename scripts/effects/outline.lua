@@ -41,7 +41,7 @@ return fx.effect {
     contrast = fx.float { min = 0, default = 1, doc = "Steepness around an edge of one half: 1 leaves it, high values make lines hard and drop weak ones." },
     level_slopes = fx.bool { default = true,
       doc = "offset: depth counts as far as it leaves the plane that goes on from the pixel behind, so that ground seen at a grazing angle draws no line. false: every difference counts, as in the source." },
-    color = fx.color { default = { 0, 0, 0 }, doc = "Ink." },
+    color = fx.color { default = { 0, 0, 0 }, doc = "Ink. It ends where the picture's alpha is 0." },
     blend = fx.enum { "lerp", "add", default = "lerp", doc = "lerp: ink covers the picture. add: ink is light that is added." },
   },
 

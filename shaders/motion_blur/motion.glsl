@@ -10,5 +10,5 @@ vec4 apply(vec4 color, vec4 motion, vec4 depth) {
   vec2 way = clamp(motion.xy * scale, -1e9, 1e9);
   float length_of_way = length(way);
   float longer = max(length_of_way / max_radius, 1.0);
-  return vec4(way / longer, has_depth ? -depth.r : min(length_of_way, max_radius), min(longer, 3e4));
+  return vec4(way / longer, has_depth ? -depth.r : min(length_of_way, max_radius), min(longer, 6e4 / max_radius));
 }
