@@ -115,15 +115,15 @@ std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_
 }
 
 /// Sound lies some way off its pictures in the file: where parts meet it is of the one that goes on best.
-std::int64_t ClockFollower::shift_of(const AVPacket& packet, std::int64_t time, std::int64_t end) const {
-  auto here = std::ranges::upper_bound(parts_, packet.pos, {}, &ClockPart::pos);
+std::int64_t ClockFollower::shift_of(const Way& way, std::int64_t time, bool sound) const {
+  auto here = std::ranges::upper_bound(parts_, way.pos, {}, &ClockPart::pos);
   if (here != parts_.begin()) --here;
   std::int64_t best = kSeamless, shift = here->shift;
-  if (!is_known(end)) return shift;
+  if (!sound || !is_known(way.end)) return shift;
   const auto first = here == parts_.begin() ? here : here - 1;
   const auto last = here + 1 == parts_.end() ? here : here + 1;
   for (auto part = first; part <= last; ++part) {
-    const std::int64_t off = std::abs(time + part->shift - end);
+    const std::int64_t off = std::abs(time + part->shift - way.end);
     if (off >= best) continue;
     best = off;
     shift = part->shift;
@@ -131,20 +131,31 @@ std::int64_t ClockFollower::shift_of(const AVPacket& packet, std::int64_t time, 
   return shift;
 }
 
+std::int64_t ClockFollower::shift_by_itself(const Way& way, std::int64_t time) const {
+  if (!is_known(way.end)) return 0;
+  const std::int64_t at = time + way.shift;
+  const bool anew = at < way.begin - kRoundBack || (alone_ && at > way.end + kLongestPause);
+  return anew ? way.end - time : way.shift;
+}
+
 bool ClockFollower::follow(AVPacket& packet, const AVStream& stream) {
-  if (parts_.empty()) return true;
+  const bool sound = stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO;
+  if (parts_.empty() && !sound) return true;
+  Way& way = ways_[static_cast<std::size_t>(packet.stream_index)];
+  if (packet.pos >= 0) way.pos = packet.pos;  // of several that lie together only the first one has it
   const std::int64_t stamp = is_known(packet.dts) ? packet.dts : packet.pts;
   if (!is_known(stamp)) return true;
-  const bool sound = stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO;
-  std::int64_t& end = ends_[static_cast<std::size_t>(packet.stream_index)];
   const std::int64_t time = av_rescale_q(stamp, stream.time_base, kMicroseconds);
-  const std::int64_t shift = shift_of(packet, time, sound ? end : kNone);
+  const std::int64_t shift = parts_.empty() ? shift_by_itself(way, time) : shift_of(way, time, sound);
   const std::int64_t moved = av_rescale_q(shift, kMicroseconds, stream.time_base);
   if (is_known(packet.pts)) packet.pts += moved;
   if (is_known(packet.dts)) packet.dts += moved;
-  const std::int64_t length = av_rescale_q(packet.duration, stream.time_base, kMicroseconds);
-  if (is_known(end) && time + shift < end - length / 2 - 1) return false;
-  end = time + shift + length;
+  const std::int64_t length = av_rescale_q(packet.duration, stream.time_base, kMicroseconds), begin = time + shift;
+  // Lengths alone are no reason where the clock runs on: some are guesses.
+  if (is_known(way.end) && begin < (parts_.empty() ? way.begin : way.end - length / 2 - 1)) return false;
+  way.begin = begin;
+  way.end = begin + length;
+  way.shift = shift;
   return true;
 }
 

@@ -14,19 +14,28 @@ namespace afterglow {
 std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_base,
                               std::vector<MoviePacket>& packets);
 
-/// The same for the packets of all other streams, in the order in which they are read.
+/// The same for the packets of all other streams, in the order in which they are read. Where there are no parts, sound
+/// whose stamps go back goes on behind what came before it. `alone`: there are no pictures that tell of the clock; then
+/// sound that pauses for long goes on at once, too.
 class ClockFollower {
  public:
-  ClockFollower(std::vector<ClockPart> parts, unsigned streams) : parts_(std::move(parts)), ends_(streams, kNone) {}
+  ClockFollower(std::vector<ClockPart> parts, unsigned streams, bool alone = false)
+      : parts_(std::move(parts)), ways_(streams), alone_(alone) {}
   /// False: the packet lies over what came before it, and is to be left out.
   bool follow(AVPacket& packet, const AVStream& stream);
 
  private:
   static constexpr std::int64_t kNone = AV_NOPTS_VALUE;
-  std::int64_t shift_of(const AVPacket& packet, std::int64_t time, std::int64_t end) const;
+  /// How far a stream has come. Times in microseconds.
+  struct Way {
+    std::int64_t pos = 0, begin = kNone, end = kNone, shift = 0;  ///< of its last packet
+  };
+  std::int64_t shift_of(const Way& way, std::int64_t time, bool sound) const;
+  std::int64_t shift_by_itself(const Way& way, std::int64_t time) const;
 
   std::vector<ClockPart> parts_;
-  std::vector<std::int64_t> ends_;  ///< by stream: until when it has come, in microseconds
+  std::vector<Way> ways_;  ///< by stream
+  bool alone_ = false;
 };
 
 }  // namespace afterglow

@@ -13,6 +13,7 @@ extern "C" {
 
 #include "core/text.h"
 #include "image/ffmpeg_facts.h"
+#include "image/ffmpeg_index.h"
 #include "image/ffmpeg_log.h"
 
 namespace afterglow {
@@ -86,6 +87,18 @@ void move(AVPacket& packet, std::int64_t microseconds, AVRational clock) {
   if (packet.dts != AV_NOPTS_VALUE) packet.dts += by;
 }
 
+bool is_mpeg(const AVFormatContext& input) { return std::string_view(input.iformat->name).starts_with("mpeg"); }
+
+/// Where the clock of its pictures starts anew; none where it has no pictures that are read.
+std::optional<std::vector<ClockPart>> clock_of_pictures(const std::filesystem::path& file, const AVFormatContext& input,
+                                                        const Patience& patience) {
+  if ((input.pb->seekable & AVIO_SEEKABLE_NORMAL) == 0) return std::nullopt;  // is read but once
+  auto pictures = FfmpegInput::open(file, input.iformat->name, {}, patience);
+  if (!pictures) return std::nullopt;
+  auto index = index_movie(**pictures);
+  return index ? std::optional(std::move(index->parts)) : std::nullopt;
+}
+
 }  // namespace
 
 FfmpegCopy::~FfmpegCopy() {
@@ -109,10 +122,18 @@ Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path
   if (code < 0) return copy->cannot_be_read(code);
   code = avformat_find_stream_info(copy->input_, nullptr);
   if (code < 0 || copy->bytes_->given_up()) return copy->cannot_be_read(code);
-  copy->clock_.emplace(range.clock, copy->input_->nb_streams);
+  copy->follow_clock(what, patience);
   AFTERGLOW_CHECK(copy->add_streams(what, name, diagnostics));
   if (what != Copied::sound) copy->add_chapters();
   return copy;
+}
+
+/// The clock of the source is known; that of another file is found here.
+void FfmpegCopy::follow_clock(Copied what, const Patience& patience) {
+  std::optional parts(range_.clock);
+  const bool other = what == Copied::sound && is_mpeg(*input_);
+  if (other) parts = clock_of_pictures(file_, *input_, patience);
+  clock_.emplace(parts.value_or(std::vector<ClockPart>{}), input_->nb_streams, !parts);
 }
 
 Error FfmpegCopy::cannot_be_read(int code) const {

@@ -41,6 +41,7 @@ class FfmpegCopy {
 
  private:
   explicit FfmpegCopy(FfmpegOutput& output) : output_(output) {}
+  void follow_clock(Copied what, const Patience& patience);
   Result<AVStream*> add_stream(unsigned index);
   Result<void> add_streams(Copied what, const std::string& name, Diagnostics& diagnostics);
   void add_chapters();

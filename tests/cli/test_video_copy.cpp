@@ -145,47 +145,73 @@ TEST_F(VideoOut, VideoToVideo) {
   EXPECT_LT(std::stod(sound.back()), std::stod(ten.back()) + 0.09);
 }
 
-/// Joined streams: the sound of each part stays beside its pictures.
-TEST_F(VideoOut, SoundFollowsAClockThatStartsAnew) {
-  make_frames(24);
-  ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
-                  "anoisesrc=duration=1:seed=1 -c:v libx264 -bf 2 -g 12 -c:a mp2 part.ts && "
-                  "cat part.ts part.ts > joined.ts")
-                .exit_code,
-            0);
+/// Streams that were joined.
+class JoinedStreams : public VideoOut {
+ protected:
   using Packets = std::vector<std::pair<std::string, double>>;
-  const auto packets = [&](const std::string& name, const std::string& stream) {
+
+  /// part.ts of a second, of 24 pictures and sound.
+  void make_part() {
+    make_frames(24);
+    ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
+                    "anoisesrc=duration=1:seed=1 -c:v libx264 -bf 2 -g 12 -c:a mp2 part.ts")
+                  .exit_code,
+              0);
+  }
+  /// What is in them, and when it shows.
+  Packets packets(const std::string& name, const std::string& stream) {
     Packets all;
     const auto probed = probe(name, "-show_packets -show_data_hash md5 -select_streams " + stream);
     for (const auto& one : probed.at("packets"))
       all.emplace_back(one.at("data_hash").get<std::string>(), std::stod(one.at("pts_time").get<std::string>()));
     return all;
-  };
-  const auto times_of = [](const Packets& all, const std::string& hash) {
+  }
+  /// When the tenth packet of sound of each part is heard behind the first picture.
+  std::vector<double> tenth_in(const std::string& name) {
+    const std::string hash = packets("part.ts", "a").at(9).first;
+    const double begin = packets(name, "v").front().second;
     std::vector<double> times;
-    for (const auto& [own, time] : all)
-      if (own == hash) times.push_back(time);
+    for (const auto& [own, time] : packets(name, "a"))
+      if (own == hash) times.push_back(time - begin);
     return times;
-  };
-  const Packets part = packets("part.ts", "a");
-  const double late = part.at(9).second - packets("part.ts", "v").front().second;
-  const auto out_times = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> arguments{"run", "look.lua", "joined.ts", "-o", name, "--codec", "ffv1"};
+  }
+  std::vector<double> out_times(const std::string& name, const std::vector<std::string>& more,
+                                const std::string& from = "joined.ts") {
+    std::vector<std::string> arguments{"run", "look.lua", from, "-o", name, "--codec", "ffv1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-    const double begin = packets(name, "v").front().second;
-    std::vector<double> times = times_of(packets(name, "a"), part.at(9).first);
-    for (double& time : times) time -= begin;
-    return times;
-  };
+    return tenth_in(name);
+  }
+};
+
+/// The sound of each part stays beside its pictures.
+TEST_F(JoinedStreams, SoundFollowsAClockThatStartsAnew) {
+  make_part();
+  ASSERT_EQ(shell("cat part.ts part.ts part.ts > joined.ts").exit_code, 0);
+  const double late = packets("part.ts", "a").at(9).second - packets("part.ts", "v").front().second;
   const std::vector<double> whole = out_times("whole.mkv", {});
-  ASSERT_EQ(whole.size(), 2u);
-  EXPECT_NEAR(whole[0], late, 2e-3);
-  EXPECT_NEAR(whole[1], late + 1, 2e-3);
+  ASSERT_EQ(whole.size(), 3u);
+  for (int part = 0; part < 3; ++part) EXPECT_NEAR(whole[static_cast<std::size_t>(part)], late + part, 2e-3);
   const std::vector<double> cut = out_times("cut.mkv", {"--frames", "19-40"});
   ASSERT_EQ(cut.size(), 1u);
   EXPECT_NEAR(cut[0], late + 1 - 18 / 24.0, 2e-3);
+  EXPECT_EQ(packets("whole.mkv", "a").size(), 3 * packets("part.ts", "a").size());
+}
+
+/// Sound of another file follows that file's clock; where it has no pictures, sound goes on behind sound.
+TEST_F(JoinedStreams, SoundOfAnotherFileFollowsItsOwnClock) {
+  make_part();
+  ASSERT_EQ(shell("ffmpeg -v error -i part.ts -map 0:a -c copy sound.ts && cat part.ts part.ts part.ts > joined.ts && "
+                  "cat sound.ts sound.ts sound.ts > sounds.ts && "
+                  "ffmpeg -v error -f lavfi -i color=s=16x16:r=24:d=5 -c:v ffv1 long.mkv")
+                .exit_code,
+            0);
+  for (const char* from : {"joined.ts", "sounds.ts"}) {
+    const std::vector<double> times = out_times(std::string(from) + ".mkv", {"--audio", from}, "long.mkv");
+    ASSERT_EQ(times.size(), 3u) << from;
+    for (std::size_t part = 1; part < 3; ++part) EXPECT_NEAR(times[part] - times[part - 1], 1, 0.03) << from;
+  }
 }
 
 /// The clock of MP3 in AVI counts packets of 24 ms: a cut is made by a finer one.
