@@ -159,4 +159,8 @@ bool ClockFollower::follow(AVPacket& packet, const AVStream& stream) {
   return true;
 }
 
+void ClockFollower::resume(int stream, std::int64_t pos, std::int64_t time) {
+  ways_[static_cast<std::size_t>(stream)] = {.pos = pos, .begin = time, .end = time};
+}
+
 }  // namespace afterglow

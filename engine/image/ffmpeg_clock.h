@@ -23,6 +23,8 @@ class ClockFollower {
       : parts_(std::move(parts)), ways_(streams), alone_(alone) {}
   /// False: the packet lies over what came before it, and is to be left out.
   bool follow(AVPacket& packet, const AVStream& stream);
+  /// What is read next follows this place, to which the stream had come then (microseconds of the clock that runs on).
+  void resume(int stream, std::int64_t pos, std::int64_t time);
 
  private:
   static constexpr std::int64_t kNone = AV_NOPTS_VALUE;

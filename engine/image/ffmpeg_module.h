@@ -28,7 +28,8 @@ struct FfmpegModule {
   Result<void> (*join)(const VideoPlan& plan, const VideoPieces& pieces, OutputFile& out,
                        const std::filesystem::path& path, const std::string& name, Diagnostics& diagnostics);
   /// See ffmpeg_sound.h.
-  Result<std::unique_ptr<SoundTrack>> (*sound)(const MovieRequest& request, double start);
+  Result<std::unique_ptr<SoundTrack>> (*sound)(const MovieRequest& request, double start,
+                                               const std::vector<ClockPart>& clock);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed, built without it).

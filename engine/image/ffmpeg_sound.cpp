@@ -3,6 +3,7 @@
 
 extern "C" {
 #include <libavutil/channel_layout.h>
+#include <libavutil/mathematics.h>
 #include <libavutil/opt.h>
 #include <libswresample/swresample.h>
 }
@@ -10,10 +11,12 @@ extern "C" {
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_input.h"
 
 namespace afterglow {
@@ -28,6 +31,9 @@ constexpr std::int64_t kNear = 2 * kRate;
 constexpr std::int64_t kRound = kRate / 100;
 /// Seconds. A stamp beyond that is none: no sound lasts for years.
 constexpr double kFarthest = 1e9;
+constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
+/// Places in files whose clock starts anew are so far apart.
+constexpr std::int64_t kApart = AV_TIME_BASE / 2;
 /// As with pictures: decoders that strangers' files may reach.
 constexpr const char* kCodecs =
     "aac,mp3,mp3float,mp2,mp2float,mp1,mp1float,opus,libopus,vorbis,libvorbis,flac,alac,ac3,eac3,wavpack,tta,"
@@ -44,7 +50,7 @@ float held_sample(float sample) { return std::isnan(sample) ? 0 : std::clamp(sam
 class FfmpegSound : public SoundTrack {
  public:
   /// False: there is no sound.
-  Result<bool> open(const MovieRequest& request, double start) {
+  Result<bool> open(const MovieRequest& request, double start, const std::vector<ClockPart>& clock) {
     name_ = request.file.string();
     AFTERGLOW_TRY(input_, FfmpegInput::open(request.file, request.format, request.limits, request.patience));
     AVFormatContext& container = input_->container();
@@ -69,6 +75,7 @@ class FfmpegSound : public SoundTrack {
     if (const int opened = avcodec_open2(codec_.get(), codec, nullptr); opened < 0)
       return Error{ErrorKind::io, "has sound that cannot be decoded: " + ffmpeg_error(opened), name_};
     start_ = start;
+    clock_ = clock;
     rewind_ = true;  // what was read to know the streams is read again
     return true;
   }
@@ -93,6 +100,11 @@ class FfmpegSound : public SoundTrack {
   }
 
  private:
+  /// Where a packet lies, and when it is heard: microseconds of the clock that runs on.
+  struct Place {
+    std::int64_t pos = 0, time = 0;
+  };
+
   std::int64_t end() const { return held_ + static_cast<std::int64_t>(samples_.size()) / kChannels; }
 
   void forget() {
@@ -103,9 +115,49 @@ class FfmpegSound : public SoundTrack {
     anchored_ = ended_ = draining_ = rewind_ = false;
   }
 
+  bool seek_bytes(std::int64_t pos) {
+    return avformat_seek_file(&input_->container(), -1, INT64_MIN, pos, INT64_MAX, AVSEEK_FLAG_BYTE) >= 0;
+  }
+
+  /// From where what is read comes behind `pos` in the file.
+  void follow_from(std::int64_t pos, std::int64_t time) {
+    if (clock_.empty()) return;
+    follower_.emplace(clock_, input_->container().nb_streams);
+    follower_->resume(stream_, pos, time);
+  }
+
+  /// The next packet by the clock that runs on. False: the end.
+  bool next_packet() {
+    while (input_->read(*packet_, stream_) >= 0)
+      if (!follower_ || follower_->follow(*packet_, *input_->container().streams[stream_])) return true;
+    return false;
+  }
+
+  /// Of the whole file: where stamps go back, FFmpeg does not find them.
+  void find_places() {
+    const AVRational base = input_->container().streams[stream_]->time_base;
+    seek_to_start();
+    for (; next_packet(); av_packet_unref(packet_.get())) {
+      if (packet_->pos < 0 || packet_->dts == AV_NOPTS_VALUE) continue;
+      const std::int64_t time = av_rescale_q(packet_->dts, base, kMicroseconds);
+      if (places_.empty() || time >= places_.back().time + kApart) places_.push_back({packet_->pos, time});
+    }
+  }
+
+  void seek_place(double seconds) {
+    if (places_.empty()) find_places();
+    auto place = std::ranges::upper_bound(places_, seconds * AV_TIME_BASE, {},
+                                          [](const Place& one) { return static_cast<double>(one.time); });
+    if (place == places_.begin() || !seek_bytes((--place)->pos)) return seek_to_start();
+    forget();
+    follow_from(place->pos, place->time);
+    whole_ = false;
+  }
+
   void seek(std::int64_t sample) {
     const AVRational base = input_->container().streams[stream_]->time_base;
     const double seconds = static_cast<double>(sample) / static_cast<double>(kRate) + start_;
+    if (!clock_.empty() && sample > 0) return seek_place(seconds);
     const auto stamp = static_cast<std::int64_t>(std::floor(seconds / av_q2d(base)));
     if (sample <= 0 || avformat_seek_file(&input_->container(), stream_, INT64_MIN, stamp, stamp, 0) < 0)
       return seek_to_start();
@@ -115,9 +167,10 @@ class FfmpegSound : public SoundTrack {
 
   void seek_to_start() {
     AVFormatContext& container = input_->container();
-    if (avformat_seek_file(&container, stream_, INT64_MIN, INT64_MIN / 2, INT64_MAX, 0) < 0)
-      avformat_seek_file(&container, -1, INT64_MIN, 0, INT64_MAX, AVSEEK_FLAG_BYTE);
+    if (!clock_.empty() || avformat_seek_file(&container, stream_, INT64_MIN, INT64_MIN / 2, INT64_MAX, 0) < 0)
+      seek_bytes(0);
     forget();
+    follow_from(0, AV_NOPTS_VALUE);
     whole_ = true;
   }
 
@@ -138,7 +191,7 @@ class FfmpegSound : public SoundTrack {
         take(*frame_);
         av_frame_unref(frame_.get());
       } else if (got == AVERROR(EAGAIN) && !draining_) {
-        draining_ = input_->read(*packet_, stream_) < 0;
+        draining_ = !next_packet();
         avcodec_send_packet(codec_.get(), draining_ ? nullptr : packet_.get());  // what it cannot take is silent
         av_packet_unref(packet_.get());
       } else if (got == AVERROR_EOF || draining_) {
@@ -217,6 +270,9 @@ class FfmpegSound : public SoundTrack {
   std::unique_ptr<SwrContext, SwrDeleter> converter_;
   int rate_ = 0, format_ = -1, channels_ = 0;
   double start_ = 0;
+  std::vector<ClockPart> clock_;  ///< where the file's starts anew
+  std::optional<ClockFollower> follower_;
+  std::vector<Place> places_;   ///< by rising times
   std::vector<float> samples_;  ///< decoded, from frame `held_` on
   std::int64_t held_ = 0;
   bool whole_ = false;  ///< nothing comes before `held_`
@@ -225,9 +281,10 @@ class FfmpegSound : public SoundTrack {
 
 }  // namespace
 
-Result<std::unique_ptr<SoundTrack>> open_sound_with_ffmpeg(const MovieRequest& request, double start) {
+Result<std::unique_ptr<SoundTrack>> open_sound_with_ffmpeg(const MovieRequest& request, double start,
+                                                           const std::vector<ClockPart>& clock) {
   auto sound = std::make_unique<FfmpegSound>();
-  AFTERGLOW_TRY(const bool any, sound->open(request, start));
+  AFTERGLOW_TRY(const bool any, sound->open(request, start, clock));
   return any ? std::unique_ptr<SoundTrack>(std::move(sound)) : nullptr;
 }
 

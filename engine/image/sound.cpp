@@ -15,7 +15,7 @@ Result<std::unique_ptr<SoundTrack>> SoundTrack::open(const Movie& movie) {
   const double start = static_cast<double>(facts.pts.front()) * static_cast<double>(facts.time_base.numerator) /
                        static_cast<double>(facts.time_base.denominator);
   AFTERGLOW_TRY(const Patience patience, patience_of_process());
-  return module->sound({movie.file(), format, {}, patience}, start);
+  return module->sound({movie.file(), format, {}, patience}, start, facts.clock);
 }
 
 }  // namespace afterglow

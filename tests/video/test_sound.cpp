@@ -84,6 +84,29 @@ TEST_F(Sounds, EverySampleIsWhereItBelongs) {
   }
 }
 
+/// Joined MPEG streams, whose stamps go back where they meet: in order and after jumps.
+TEST_F(Sounds, GoOnWhereAClockStartsAnew) {
+  constexpr int kPart = 2, kParts = 3, kBlock = 480;
+  const std::string part = sounding("part.ts", kNoise, "-c:v mpeg2video -c:a mp2 -b:a 384k", kPart);
+  ASSERT_EQ(std::system(fmt::format("cat \"{0}\" \"{0}\" \"{0}\" > \"{1}\"", part, path("joined.ts")).c_str()), 0);
+  const auto one = track_of(part), in_order = track_of(path("joined.ts")), jumping = track_of(path("joined.ts"));
+  ASSERT_TRUE(one && in_order && jumping);
+  std::vector<float> all;
+  for (int block = 0; block < kParts * kPart * kRate / kBlock; ++block) {
+    const auto some = samples_of(*in_order, block * kBlock, kBlock);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  for (const std::int64_t first : {20'000, 48'000, 80'000}) {
+    const auto expected = samples_of(*one, first, kBlock);
+    for (const int at : {2, 0, 1}) {
+      const std::int64_t place = at * kPart * kRate + first;
+      EXPECT_LT(least_difference(expected, all, static_cast<std::size_t>(place), kRate / 100), 0.02) << place;
+      const auto there = samples_of(*jumping, place - kBlock, 3 * kBlock);
+      EXPECT_LT(least_difference(expected, there, kBlock, kBlock), 0.02) << place << ", after a jump";
+    }
+  }
+}
+
 TEST_F(Sounds, CodecsGiveAfterASeekWhatTheyGiveInOrder) {
   struct Kind {
     const char *name, *codec;
