@@ -25,14 +25,12 @@ bool is_known(std::int64_t stamp) { return stamp != AV_NOPTS_VALUE; }
 
 /// Where parts begin, as places in `packets`; the first at 0.
 std::vector<std::size_t> beginnings(AVRational time_base, std::span<const MoviePacket> packets) {
-  const std::int64_t pause = av_rescale_q(kLongestPause, kMicroseconds, time_base),
-                     back = av_rescale_q(kRoundBack, kMicroseconds, time_base);
   std::vector<std::size_t> out{0};
   std::int64_t last = AV_NOPTS_VALUE;
   for (std::size_t i = 0; i < packets.size(); ++i) {
     const std::int64_t stamp = packets[i].dts;
     if (!is_known(stamp)) continue;
-    if (is_known(last) && (stamp < last - back || stamp > last + pause)) out.push_back(i);
+    if (starts_anew(last, stamp, time_base)) out.push_back(i);
     last = stamp;
   }
   return out;
@@ -94,6 +92,12 @@ void move(std::span<MoviePacket> part, std::int64_t shift) {
 }
 
 }  // namespace
+
+bool starts_anew(std::int64_t last, std::int64_t next, AVRational time_base) {
+  if (!is_known(last) || !is_known(next)) return false;
+  return next < last - av_rescale_q(kRoundBack, kMicroseconds, time_base) ||
+         next > last + av_rescale_q(kLongestPause, kMicroseconds, time_base);
+}
 
 std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_base,
                               std::vector<MoviePacket>& packets) {

@@ -9,6 +9,9 @@
 
 namespace afterglow {
 
+/// Whether an MPEG stream's clock starts anew between these stamps of decoding, of which either may be unknown.
+bool starts_anew(std::int64_t last, std::int64_t next, AVRational time_base);
+
 /// Puts the parts of the file behind one another. Pictures that show before the first key of a part are not shown, as
 /// at the beginning of a file that was cut. Returns no part where there is but one.
 std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_base,

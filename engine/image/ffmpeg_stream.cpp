@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
+#include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_facts.h"
 #include "image/ffmpeg_input.h"
 #include "image/movie_color.h"
@@ -30,6 +32,7 @@ class StreamFrame : public MovieSource {
 };
 
 constexpr const char* kCut = "is cut off: the stream ends in it";
+constexpr const char* kAnew = "comes near a place where the stream's clock starts anew, which is read of files only";
 
 class FfmpegStream : public MovieFrames {
  public:
@@ -57,6 +60,17 @@ class FfmpegStream : public MovieFrames {
     return {ErrorKind::io, fmt::format("frame {} {}", count_ + 1, why), name_};
   }
 
+  /// Whether the packet that looks cut does so for being the last one before the clock starts anew, or the one before.
+  bool ends_part() {
+    if (!std::string_view(input_->container().iformat->name).starts_with("mpeg")) return false;
+    for (int ahead = 0; ahead < 2; ++ahead) {
+      const std::int64_t last = packet_->dts;
+      if (input_->read(*packet_) < 0) return false;
+      if (starts_anew(last, packet_->dts, input_->stream().time_base)) return true;
+    }
+    return false;
+  }
+
   Result<void> feed() {
     const int read = input_->read(*packet_);
     if (read == AVERROR_EOF && !input_->given_up()) {
@@ -66,7 +80,8 @@ class FfmpegStream : public MovieFrames {
       return {};
     }
     if (auto reason = input_->given_up()) return *std::move(reason);
-    if (read < 0 || (packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return broken(kCut);
+    if (read < 0) return broken(kCut);
+    if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return broken(ends_part() ? kAnew : kCut);
     const int sent = avcodec_send_packet(codec_.get(), packet_.get());
     av_packet_unref(packet_.get());
     return sent < 0 ? Result<void>(broken("is cut off or damaged: " + ffmpeg_error(sent))) : Result<void>();

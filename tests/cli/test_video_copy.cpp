@@ -199,6 +199,14 @@ TEST_F(JoinedStreams, SoundFollowsAClockThatStartsAnew) {
   EXPECT_EQ(packets("whole.mkv", "a").size(), 3 * packets("part.ts", "a").size());
 }
 
+/// Through a pipe they end the run, and say why.
+TEST_F(JoinedStreams, AreReadOfFilesOnly) {
+  make_part();
+  const Outcome outcome = shell("cat part.ts part.ts | \"$AFTERGLOW\" run look.lua - -o out.mkv --codec ffv1");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("where the stream's clock starts anew, which is read of files only"));
+}
+
 /// Sound of another file follows that file's clock; where it has no pictures, sound goes on behind sound.
 TEST_F(JoinedStreams, SoundOfAnotherFileFollowsItsOwnClock) {
   make_part();
