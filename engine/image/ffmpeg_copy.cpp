@@ -9,7 +9,9 @@ extern "C" {
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <string_view>
+#include <utility>
 
 #include "core/text.h"
 #include "image/ffmpeg_facts.h"
@@ -89,14 +91,29 @@ void move(AVPacket& packet, std::int64_t microseconds, AVRational clock) {
 
 bool is_mpeg(const AVFormatContext& input) { return std::string_view(input.iformat->name).starts_with("mpeg"); }
 
-/// Where the clock of its pictures starts anew; none where it has no pictures that are read.
-std::optional<std::vector<ClockPart>> clock_of_pictures(const std::filesystem::path& file, const AVFormatContext& input,
-                                                        const Patience& patience) {
-  if ((input.pb->seekable & AVIO_SEEKABLE_NORMAL) == 0) return std::nullopt;  // is read but once
+struct MpegClock {
+  std::vector<ClockPart> parts;  ///< where it starts anew
+  std::int64_t begin = 0;        ///< when the first picture shows; without pictures, when the sound begins
+  bool pictures = false;         ///< there are some, and they are read
+};
+
+MpegClock clock_of(const std::filesystem::path& file, const AVFormatContext& input, const Patience& patience) {
+  MpegClock clock{.parts = {}, .begin = input.start_time != AV_NOPTS_VALUE ? input.start_time : 0};
+  if ((input.pb->seekable & AVIO_SEEKABLE_NORMAL) == 0) return clock;  // is read but once
   auto pictures = FfmpegInput::open(file, input.iformat->name, {}, patience);
-  if (!pictures) return std::nullopt;
+  if (!pictures) return clock;
   auto index = index_movie(**pictures);
-  return index ? std::optional(std::move(index->parts)) : std::nullopt;
+  if (!index || index->pts.empty()) return clock;
+  const std::int64_t begin = av_rescale_q(index->pts.front(), (*pictures)->stream().time_base, kMicroseconds);
+  return {std::move(index->parts), begin, true};
+}
+
+/// A range of the time since the clock's beginning.
+void begin_at(std::int64_t begin, CopyRange& range) {
+  using Limits = std::numeric_limits<long long>;
+  range.shift += begin;
+  if (range.begin != Limits::min()) range.begin += begin;
+  if (range.end != Limits::max()) range.end += begin;
 }
 
 }  // namespace
@@ -128,12 +145,14 @@ Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path
   return copy;
 }
 
-/// The clock of the source is known; that of another file is found here.
+/// The clock of the source is known; that of another MPEG stream, which runs from anywhere, is found here.
 void FfmpegCopy::follow_clock(Copied what, const Patience& patience) {
-  std::optional parts(range_.clock);
-  const bool other = what == Copied::sound && is_mpeg(*input_);
-  if (other) parts = clock_of_pictures(file_, *input_, patience);
-  clock_.emplace(parts.value_or(std::vector<ClockPart>{}), input_->nb_streams, !parts);
+  MpegClock clock{.parts = range_.clock, .pictures = true};
+  if (what == Copied::sound && is_mpeg(*input_)) {
+    clock = clock_of(file_, *input_, patience);
+    begin_at(clock.begin, range_);
+  }
+  clock_.emplace(std::move(clock.parts), input_->nb_streams, !clock.pictures);
 }
 
 Error FfmpegCopy::cannot_be_read(int code) const {

@@ -215,9 +215,13 @@ TEST_F(JoinedStreams, SoundOfAnotherFileFollowsItsOwnClock) {
                   "ffmpeg -v error -f lavfi -i color=s=16x16:r=24:d=5 -c:v ffv1 long.mkv")
                 .exit_code,
             0);
-  for (const char* from : {"joined.ts", "sounds.ts"}) {
+  const auto sound = packets("part.ts", "a");
+  const double behind_picture = sound.at(9).second - packets("part.ts", "v").front().second,
+               behind_sound = sound.at(9).second - sound.at(0).second;
+  for (const auto& [from, first] : {std::pair("joined.ts", behind_picture), std::pair("sounds.ts", behind_sound)}) {
     const std::vector<double> times = out_times(std::string(from) + ".mkv", {"--audio", from}, "long.mkv");
     ASSERT_EQ(times.size(), 3u) << from;
+    EXPECT_NEAR(times[0], first, 2e-3) << from;
     for (std::size_t part = 1; part < 3; ++part) EXPECT_NEAR(times[part] - times[part - 1], 1, 0.03) << from;
   }
 }
