@@ -47,6 +47,19 @@ struct SwrDeleter {
 /// Files of floats hold anything.
 float held_sample(float sample) { return std::isnan(sample) ? 0 : std::clamp(sample, -1.0f, 1.0f); }
 
+/// Negative: there is none. MPEG streams tell of rates in the sound itself, which was passed over while the pictures
+/// were looked for: there is no best one then, and decoders find out the rest.
+int best_sound(AVFormatContext& container) {
+  const int best = av_find_best_stream(&container, AVMEDIA_TYPE_AUDIO, -1, -1, nullptr, 0);
+  if (best >= 0) return best;
+  for (unsigned i = 0; i < container.nb_streams; ++i) {
+    const AVCodecParameters& parameters = *container.streams[i]->codecpar;
+    if (parameters.codec_type == AVMEDIA_TYPE_AUDIO && parameters.codec_id != AV_CODEC_ID_NONE)
+      return static_cast<int>(i);
+  }
+  return -1;
+}
+
 class FfmpegSound : public SoundTrack {
  public:
   /// False: there is no sound.
@@ -54,7 +67,7 @@ class FfmpegSound : public SoundTrack {
     name_ = request.file.string();
     AFTERGLOW_TRY(input_, FfmpegInput::open(request.file, request.format, request.limits, request.patience));
     AVFormatContext& container = input_->container();
-    stream_ = av_find_best_stream(&container, AVMEDIA_TYPE_AUDIO, -1, -1, nullptr, 0);
+    stream_ = best_sound(container);
     if (stream_ < 0) return false;
     for (unsigned i = 0; i < container.nb_streams; ++i)
       container.streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
