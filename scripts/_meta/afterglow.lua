@@ -186,12 +186,12 @@
 ---@field iterations? integer|afterglow.Moving  Halvings of the picture; each doubles the blur. 0: none. integer 0…12, default 3
 ---@field offset? number|afterglow.Moving  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. In 1024ths of a pixel. 0…3, default 1
 
----Draws lines where brightness changes, of black to display white: Sobel, Scharr or Roberts.
+---Draws lines where brightness changes: Sobel, Scharr or Roberts. All that is brighter than display white counts as white.
 ---@class afterglow.settings.edge_detection : afterglow.EntryKeys
 ---@field operator? "sobel"|"scharr"|"roberts"|afterglow.OfTime  sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines. default "sobel"
 ---@field intensity? number|afterglow.Moving  Factor of the gradient. 0: no lines. 0…100, default 2
 ---@field threshold? number|afterglow.Moving  Gradients up to this draw nothing. 0…1, default 0.05
----@field color? number[]|string|afterglow.Moving  Colour of the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field color? number[]|string|afterglow.Moving  Colour of the lines. They end where the picture's alpha is 0. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field background? number[]|string|afterglow.Moving  Colour between the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field background_opacity? number|afterglow.Moving  0: lines over the picture. 1: lines over the background alone. 0…1, default 0
 
@@ -349,7 +349,7 @@
 ---@field divide_factor? number|afterglow.Moving  The edge is divided by this. ≥ 1e-06, default 1
 ---@field contrast? number|afterglow.Moving  Steepness around an edge of one half: 1 leaves it, high values make lines hard and drop weak ones. ≥ 0, default 1
 ---@field level_slopes? boolean|afterglow.OfTime  offset: depth counts as far as it leaves the plane that goes on from the pixel behind, so that ground seen at a grazing angle draws no line. false: every difference counts, as in the source. default true
----@field color? number[]|string|afterglow.Moving  Ink. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field color? number[]|string|afterglow.Moving  Ink. It ends where the picture's alpha is 0. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field blend? "lerp"|"add"|afterglow.OfTime  lerp: ink covers the picture. add: ink is light that is added. default "lerp"
 
 ---Large square pixels, each the mean of what it covers.
@@ -536,7 +536,7 @@
 ---@field depth_of_field fun(settings: afterglow.settings.depth_of_field): afterglow.Entry  Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@field directional_blur fun(settings: afterglow.settings.directional_blur): afterglow.Entry  Smears the picture along one direction, as a moving camera does.
 ---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
----@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes, of black to display white: Sobel, Scharr or Roberts.
+---@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes: Sobel, Scharr or Roberts. All that is brighter than display white counts as white.
 ---@field exposure fun(settings: afterglow.settings.exposure): afterglow.Entry  Exposure of the scene, in stops; before the bloom and the tone curve.
 ---@field film_grain fun(settings: afterglow.settings.film_grain): afterglow.Entry  Grain of film: fine noise, new in each frame; best after tone mapping.
 ---@field firefly_stabilisation fun(settings: afterglow.settings.firefly_stabilisation): afterglow.Entry  Takes down single bright pixels that flash up in one frame of a sequence.

@@ -106,9 +106,9 @@ TEST(Outline, BlendsAndKeepsAlpha) {
   const DoubleImage source(kSize, Rgba(2, 4, 8, 0.5));
   auto s = depth_only();
   s.color = {1, 0, 0};
-  EXPECT_EQ(outline(source, &depth, nullptr, s).at(2, 0), Rgba(1.75, 3, 6, 0.5));
+  EXPECT_EQ(outline(source, &depth, nullptr, s).at(2, 0), Rgba(1.625, 3, 6, 0.5));
   s.blend = OutlineBlend::add;
-  EXPECT_EQ(outline(source, &depth, nullptr, s).at(2, 0), Rgba(2.25, 4, 8, 0.5));
+  EXPECT_EQ(outline(source, &depth, nullptr, s).at(2, 0), Rgba(2.125, 4, 8, 0.5));
   EXPECT_EQ(outline(source, &depth, nullptr, s).at(5, 0), source.at(5, 0));
 }
 
