@@ -60,9 +60,7 @@ void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& p
   plan.time_base = facts.time_base;
   if (facts.rate.numerator > 0) plan.rate = facts.rate;
   // Matroska rounds to milliseconds, with which every other container would tell of a rate that changes.
-  if (const auto rate = movie_->even_rate(); rate && !ticks(facts.time_base, *rate)) {
-    use_even(*rate, plan);
-  }
+  if (const auto rate = movie_->even_rate(); rate && !ticks(facts.time_base, *rate)) use_even(*rate, plan);
   if (!facts.pictures_alone) plan.source = movie_->file();
   const auto microseconds = [&](long long pts) {
     return std::llround(static_cast<double>(pts) * 1e6 * facts.time_base.numerator / facts.time_base.denominator);
@@ -80,17 +78,18 @@ void VideoTimes::begin(const FrameJob& first, const FrameJob& last, VideoPlan& p
   plan.audio_range = range_from(running ? facts.pts.front() : 0);
 }
 
-/// Whole frames are units of the clock, or thousands of them where the first does not begin with one.
+/// Whole frames are units of the clock, or thousands of them where the file does not begin with one: also of its parts,
+/// which become one video.
 void VideoTimes::use_even(const Rational& rate, VideoPlan& plan) {
   constexpr int kFine = 1000, kMost = 1'000'000;
   const MovieFacts& facts = movie_->facts();
-  const double unit = static_cast<double>(facts.time_base.numerator) / facts.time_base.denominator;
-  const double frames = static_cast<double>(facts.pts[static_cast<std::size_t>(first_)] - start_) * unit *
-                        rate.numerator / rate.denominator;
-  const double rounding = unit * rate.numerator / rate.denominator;
-  const bool whole = std::abs(frames - std::round(frames)) <= rounding || rate.numerator > kMost;
+  const double unit = static_cast<double>(facts.time_base.numerator) / facts.time_base.denominator * rate.numerator /
+                      rate.denominator;  // in frames
+  const auto frames = [&](long long pts) { return static_cast<double>(pts) * unit; };
+  const double begins = frames(facts.pts.front());
+  const bool whole = std::abs(begins - std::round(begins)) <= unit || rate.numerator > kMost;
   ticks_ = whole ? 1 : kFine;
-  late_ = std::llround(frames * static_cast<double>(ticks_));
+  late_ = std::llround(frames(facts.pts[static_cast<std::size_t>(first_)] - start_) * static_cast<double>(ticks_));
   plan.rate = rate;
   plan.time_base = {rate.denominator, rate.numerator * static_cast<int>(ticks_)};
 }

@@ -155,8 +155,9 @@ bool ClockFollower::follow(AVPacket& packet, const AVStream& stream) {
   if (is_known(packet.pts)) packet.pts += moved;
   if (is_known(packet.dts)) packet.dts += moved;
   const std::int64_t length = av_rescale_q(packet.duration, stream.time_base, kMicroseconds), begin = time + shift;
-  // Lengths alone are no reason where the clock runs on: some are guesses.
-  if (is_known(way.end) && begin < (parts_.empty() ? way.begin : way.end - length / 2 - 1)) return false;
+  // Lengths alone are no reason where the clock runs on: some are guesses. Subtitles may lie over each other.
+  const bool begins_alone = parts_.empty() || !sound;
+  if (is_known(way.end) && begin < (begins_alone ? way.begin : way.end - length / 2 - 1)) return false;
   way.begin = begin;
   way.end = begin + length;
   way.shift = shift;
