@@ -15,7 +15,6 @@ extern "C" {
 namespace afterglow {
 namespace {
 
-constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
 // As in the program ffmpeg: MPEG streams may pause for so long, and their stamps of decoding never go back.
 constexpr std::int64_t kLongestPause = 10 * AV_TIME_BASE, kRoundBack = AV_TIME_BASE / 10;
 /// Microseconds. Sound that goes on as exactly as that is of the same part.
@@ -36,13 +35,10 @@ std::vector<std::size_t> beginnings(AVRational time_base, std::span<const MovieP
   return out;
 }
 
-/// What shows before the first key cannot be decoded, as at the beginning of a file; but a stream that runs on while
-/// its clock alone jumps is whole. `joined`: it does not run on.
+/// As at the beginning of a file; but a stream that runs on while its clock alone jumps is whole. `joined`: it does not
+/// run on.
 void hide_orphans(std::span<MoviePacket> part, bool joined) {
-  const auto key = std::ranges::find(part, true, &MoviePacket::key);
-  if (key == part.end() || (key != part.begin() && !joined)) return;
-  for (MoviePacket& packet : part)
-    if (&packet < &*key || (is_known(packet.pts) && packet.pts < key->pts)) packet.shown = false;
+  if (joined || part.front().key) hide_what_comes_before_the_first_key(part);
 }
 
 /// The usual way from one packet to the next; where there is but one, its own length.
@@ -93,6 +89,8 @@ void move(std::span<MoviePacket> part, std::int64_t shift) {
 
 }  // namespace
 
+bool is_mpeg(const AVFormatContext& container) { return std::string_view(container.iformat->name).starts_with("mpeg"); }
+
 bool starts_anew(std::int64_t last, std::int64_t next, AVRational time_base) {
   if (!is_known(last) || !is_known(next)) return false;
   return next < last - av_rescale_q(kRoundBack, kMicroseconds, time_base) ||
@@ -101,7 +99,7 @@ bool starts_anew(std::int64_t last, std::int64_t next, AVRational time_base) {
 
 std::vector<ClockPart> run_on(const AVFormatContext& container, AVRational time_base,
                               std::vector<MoviePacket>& packets) {
-  if (!std::string_view(container.iformat->name).starts_with("mpeg")) return {};
+  if (!is_mpeg(container)) return {};
   const std::vector<std::size_t> begins = beginnings(time_base, packets);
   if (begins.size() == 1) return {};
   std::vector<ClockPart> parts{{}};

@@ -9,6 +9,11 @@
 
 namespace afterglow {
 
+inline constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
+
+/// Transport and program streams, whose clocks run from anywhere.
+bool is_mpeg(const AVFormatContext& container);
+
 /// Whether an MPEG stream's clock starts anew between these stamps of decoding, of which either may be unknown.
 bool starts_anew(std::int64_t last, std::int64_t next, AVRational time_base);
 

@@ -26,8 +26,6 @@ constexpr const char* kFormats =
     "mov,mp4,matroska,webm,avi,mpegts,mpeg,ogg,flac,wav,w64,mp3,aac,ac3,eac3,aiff,caf,flv,mxf,opus,srt,ass,webvtt,gif,"
     "apng,yuv4mpegpipe,asf,nut,ivf,mpegvideo";
 
-constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
-
 std::string stream_name(const AVStream& stream, unsigned index) {
   const char* kind = av_get_media_type_string(stream.codecpar->codec_type);
   return fmt::format("{} {} ({})", kind ? kind : "data", index + 1, avcodec_get_name(stream.codecpar->codec_id));
@@ -88,8 +86,6 @@ void move(AVPacket& packet, std::int64_t microseconds, AVRational clock) {
   if (packet.pts != AV_NOPTS_VALUE) packet.pts += by;
   if (packet.dts != AV_NOPTS_VALUE) packet.dts += by;
 }
-
-bool is_mpeg(const AVFormatContext& input) { return std::string_view(input.iformat->name).starts_with("mpeg"); }
 
 struct MpegClock {
   std::vector<ClockPart> parts;  ///< where it starts anew

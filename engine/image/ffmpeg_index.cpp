@@ -94,15 +94,6 @@ MoviePacket noted(const AVPacket& packet, AVCodecID codec, const AccessPointFind
   return out;
 }
 
-/// A stream that was cut begins with pictures that nobody can decode.
-void hide_what_comes_before_the_first_key(std::vector<MoviePacket>& packets) {
-  const auto first = std::ranges::find(packets, true, &MoviePacket::key);
-  if (first == packets.end()) return;
-  for (auto packet = packets.begin(); packet != first; ++packet) packet->shown = false;
-  for (auto packet = first; packet != packets.end(); ++packet)
-    if (packet->pts < first->pts && packet->pts != AV_NOPTS_VALUE) packet->shown = false;
-}
-
 /// Of the last frame, where the container holds lengths; elsewhere FFmpeg guesses them from rates, which is better than
 /// nothing for a frame alone.
 long long last_length(const FfmpegInput& input, const MovieIndex& index) {
@@ -132,6 +123,14 @@ std::size_t missing_frames(FfmpegInput& input, const MovieIndex& index, bool cut
 }
 
 }  // namespace
+
+void hide_what_comes_before_the_first_key(std::span<MoviePacket> packets) {
+  const auto first = std::ranges::find(packets, true, &MoviePacket::key);
+  if (first == packets.end()) return;
+  for (auto packet = packets.begin(); packet != first; ++packet) packet->shown = false;
+  for (auto packet = first; packet != packets.end(); ++packet)
+    if (packet->pts < first->pts && packet->pts != AV_NOPTS_VALUE) packet->shown = false;
+}
 
 void sort_by_time(MovieIndex& index) {
   index.order.clear();

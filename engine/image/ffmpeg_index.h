@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/result.h"
@@ -23,6 +24,9 @@ struct MoviePacket {
   bool damaged = false;       ///< the file itself says so, or ends in it
   bool needless = false;      ///< no other frame is made of it
 };
+
+/// A stream that was cut begins with pictures that nobody can decode.
+void hide_what_comes_before_the_first_key(std::span<MoviePacket> packets);
 
 struct MovieIndex {
   std::vector<MoviePacket> packets;  ///< in the order in which they are decoded

@@ -31,7 +31,6 @@ constexpr std::int64_t kNear = 2 * kRate;
 constexpr std::int64_t kRound = kRate / 100;
 /// Seconds. A stamp beyond that is none: no sound lasts for years.
 constexpr double kFarthest = 1e9;
-constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
 /// Places in files whose clock starts anew are so far apart.
 constexpr std::int64_t kApart = AV_TIME_BASE / 2;
 /// As with pictures: decoders that strangers' files may reach.

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
 #include <utility>
 
 #include "image/ffmpeg_clock.h"
@@ -62,7 +61,7 @@ class FfmpegStream : public MovieFrames {
 
   /// Whether the packet that looks cut does so for being the last one before the clock starts anew, or the one before.
   bool ends_part() {
-    if (!std::string_view(input_->container().iformat->name).starts_with("mpeg")) return false;
+    if (!is_mpeg(input_->container())) return false;
     for (int ahead = 0; ahead < 2; ++ahead) {
       const std::int64_t last = packet_->dts;
       if (input_->read(*packet_) < 0) return false;

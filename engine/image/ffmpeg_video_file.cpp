@@ -14,8 +14,6 @@ extern "C" {
 namespace afterglow {
 namespace {
 
-constexpr AVRational kCopyClock{1, AV_TIME_BASE};
-
 Error stream_failed(int code) { return {ErrorKind::io, "cannot be written: " + ffmpeg_error(code)}; }
 
 }  // namespace
@@ -67,7 +65,8 @@ void FfmpegVideoFile::add_time_code() {
   const std::string text = from_source ? copy_->time_code() : plan_.time_code;
   const AVRational rate = rational(plan_.rate);
   const bool later = from_source && plan_.range.begin >= 0;
-  const long long frames = later ? av_rescale_q(std::max(0LL, plan_.audio_range.shift), kCopyClock, av_inv_q(rate)) : 0;
+  const long long frames =
+      later ? av_rescale_q(std::max(0LL, plan_.audio_range.shift), kMicroseconds, av_inv_q(rate)) : 0;
   const std::string first = time_code_after(text, frames, plan_.rate);
   if (first.empty()) return;
   av_dict_set(&output_->container().metadata, "timecode", nullptr, 0);
@@ -86,7 +85,7 @@ Result<void> FfmpegVideoFile::write_head() {
 
 Result<void> FfmpegVideoFile::write(AVPacket& packet) {
   const AVRational clock = rational(plan_.time_base);
-  if (copy_) AFTERGLOW_CHECK(copy_->copy(av_rescale_q(packet.dts, clock, kCopyClock)));
+  if (copy_) AFTERGLOW_CHECK(copy_->copy(av_rescale_q(packet.dts, clock, kMicroseconds)));
   last_ = std::max(last_, packet.pts);
   av_packet_rescale_ts(&packet, clock, stream_->time_base);
   packet.stream_index = stream_->index;
@@ -110,7 +109,7 @@ void FfmpegVideoFile::say_last_length(std::int64_t ticks) {
 }
 
 Result<void> FfmpegVideoFile::finish(bool whole, std::int64_t end) {
-  const std::int64_t until = av_rescale_q(end, rational(plan_.time_base), kCopyClock);
+  const std::int64_t until = av_rescale_q(end, rational(plan_.time_base), kMicroseconds);
   if (copy_) AFTERGLOW_CHECK(copy_->copy(whole ? std::numeric_limits<std::int64_t>::max() : until));
   say_last_length(end - last_);
   return output_->finish();

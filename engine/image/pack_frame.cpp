@@ -52,19 +52,16 @@ class StoredRows {
   void row(int y, std::vector<float>& rgba) const {
     const auto width = static_cast<std::size_t>(picture_.display_window.width);
     rgba.resize(width * 4);
-    if (rules_.beyond && !rules_.layout->rgb_colors()) return beyond(y, width, rgba);
-    if (!rules_.layout->alpha && picture_.data_window == picture_.display_window) {  // as it lies, without a copy
+    const bool beyond = rules_.beyond && !rules_.layout->rgb_colors();
+    if (!beyond && !rules_.layout->alpha &&
+        picture_.data_window == picture_.display_window) {  // as it lies, without a copy
       if (picture_.halves.empty()) return rules_.space->encode(picture_.color.at(0, y), width, rgba.data());
       return rules_.space->encode_colors(half_row(picture_, y), width, rgba.data());
     }
     display_row(picture_, y, picture_.has_alpha ? 0.0f : 1.0f, rgba.data());
     if (rules_.layout->alpha) make_straight(rgba.data(), width);
-    rules_.space->encode(rgba.data(), width, rgba.data());
-  }
-  void beyond(int y, std::size_t width, std::vector<float>& rgba) const {
-    std::vector<float> light(width * 4);
-    display_row(picture_, y, picture_.has_alpha ? 0.0f : 1.0f, light.data());
-    if (rules_.layout->alpha) make_straight(light.data(), width);
+    if (!beyond) return rules_.space->encode(rgba.data(), width, rgba.data());
+    const std::vector<float> light = rgba;
     rules_.space->encode_beyond(light.data(), width, rgba.data());
   }
   /// What lies within a thousandth of a code is that code everywhere, as in encode.cpp.

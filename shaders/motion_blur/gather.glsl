@@ -50,7 +50,6 @@ struct Ways {
 
 /// A way to follow, on both sides of the pixel.
 struct Way {
-  vec2 step;            // between two reads, one pixel of the longer axis or several
   vec2 per_step;        // how many steps a motion is along it, by their dot product
   float slope, steps;   // aside for each step; steps from the pixel to the end
   ivec2 along, across;  // the longer axis, and the other one
@@ -66,7 +65,7 @@ Way way_along(vec2 way, bool follows) {
   ivec2 across = flat_way ? ivec2(0, 1) : ivec2(1, 0);
   ivec2 along = (1 - across) * (int(apart) * ((flat_way ? way.x : way.y) < 0.0 ? -1 : 1));
   float steps = sparse ? length_of_way / apart : length_of_way;
-  return Way(step, step / dot(step, step), flat_way ? step.y : step.x, steps, along, across, follows ? int(floor(steps + 0.5)) : 0);
+  return Way(step / dot(step, step), flat_way ? step.y : step.x, steps, along, across, follows ? int(floor(steps + 0.5)) : 0);
 }
 
 /// Sums of colours and weights.
