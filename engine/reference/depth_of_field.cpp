@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "reference/color.h"
 #include "reference/edge_pixels.h"
 #include "reference/lens.h"
 
