@@ -57,6 +57,15 @@ CLI::Validator frame_rates() {
   return {take, "FPS"};
 }
 
+void add_cuts(CLI::App& command, std::string& into, const std::string& group) {
+  command
+      .add_option("--cuts", into,
+                  "Frames that begin a shot, where effects that look back begin anew: 25,49; auto: found in the "
+                  "pictures; none (default: found in videos, none in pictures)")
+      ->type_name("LIST")
+      ->group(group);
+}
+
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
                             const std::string& help, const char* type) {
   return command.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();

@@ -30,6 +30,9 @@ CLI::Validator above_zero();
 /// Rates that videos can have (kSlowestRate).
 CLI::Validator frame_rates();
 
+/// --cuts, for parse_cuts; empty: videos are looked at.
+void add_cuts(CLI::App& command, std::string& into, const std::string& group);
+
 /// An option that may be given several times, with one value each.
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
                             const std::string& help, const char* type);

@@ -33,6 +33,7 @@ void PlayArguments::add_input(CLI::App& app) {
                  "Frames to play: 1-24, 1-24x2, 1,5,10-12 (default: all; missing ones hold the one before)")
       ->type_name("LIST")
       ->group(group);
+  add_cuts(app, cuts, group);
   layers.add(app);
   app.add_option("--proxy", proxy, "Read pictures at 1/2, 1/4 or 1/8 of their sides; what is written is whole")
       ->type_name("SIZE")
@@ -144,6 +145,9 @@ Result<PlayerOptions> PlayArguments::player() const {
   out.live.watch.poll = poll;
   out.footage.inputs = inputs;
   out.footage.frames = frames;
+  if (!cuts.empty()) {
+    AFTERGLOW_TRY(out.footage.cuts, parse_cuts(cuts));
+  }
   AFTERGLOW_TRY(out.footage.proxy, parse_proxy(proxy));
   layers.choose_reading(out.footage.read);
   out.footage.read.mattes = layers.mattes;

@@ -22,7 +22,7 @@ struct PlayArguments {
   std::vector<std::string> inputs;
   LayerArguments layers;
   DisplayArguments shown_on;
-  std::string frames;
+  std::string frames, cuts;
   std::string geometry;
   std::string other, show, loop, cache = "2G", proxy = "1", screenshot, report, exports;
   std::optional<double> fps;

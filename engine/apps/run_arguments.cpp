@@ -62,6 +62,7 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::Range(0, 100000))
       ->type_name("N")
       ->group(sequence);
+  add_cuts(app, a.cuts, sequence);
   app.add_flag("--resume", a.resume,
                "Skip outputs that are as they were left, and made by the same look of the same inputs")
       ->group(sequence);
@@ -195,6 +196,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--nan-policy", a.nan_policy == "neighbour" ? a.nan_policy : ""},
           {"--fps", number(a.fps.value_or(FrameLoopOptions{}.fps))},
           {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
+          {"--cuts", a.cuts},
           {"--type", a.type},
           {"--output-space", a.output_space},
           {"--codec", a.codec},
@@ -241,6 +243,9 @@ Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_m
   options.fail_fast = a.fail_fast || options.nan_policy == NanPolicy::fail;
   options.fps = a.fps.value_or(options.fps);
   options.takes_fps = !a.fps;
+  if (!a.cuts.empty()) {
+    AFTERGLOW_TRY(options.cuts, parse_cuts(a.cuts));
+  }
   options.max_memory = max_memory;
   a.layers.choose_reading(options.read);
   options.read.max_bytes = max_memory;

@@ -24,6 +24,7 @@ struct RunArguments {
   bool keep_partial = false, keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;
   std::optional<double> fps;
   std::optional<int> pre_roll;
+  std::string cuts;
   std::string stats, report, lock, locked;
 
   void add(CLI::App& command);

@@ -201,7 +201,8 @@ Result<void> run_frames(BatchRun& run) {
   AFTERGLOW_CHECK(check_places(run));
   if (run.notes) loop.note_frames(*run.notes);
   const auto run_waiting = [&]() -> Result<void> {
-    Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
+    Schedule schedule =
+        earlier ? schedule_with_histories(frames, asked.files, *earlier, options.cuts) : plain_schedule(frames);
     if (run.list.more) schedule.more = [&run] { return next_record(run); };
     run.report.pre_roll += schedule.earlier.size();
     const auto begun = Clock::now();

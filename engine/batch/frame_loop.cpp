@@ -29,6 +29,7 @@ struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
   std::size_t index = 0;  ///< among the frames that are written
   bool pre_roll = false, restart = false;
+  ShotSketch sketch;             ///< where cuts are looked for
   std::optional<Error> refused;  ///< by the header; nothing was read
   std::optional<Scaling> scaling;
   Hash inputs{};           ///< FrameNotes::inputs_of, before any of them was read
@@ -149,14 +150,27 @@ Result<void> FrameLoop::close(Result<void> result) {
   return {};
 }
 
+/// Where nobody tells where they are.
+bool FrameLoop::looks_for_cuts(const FrameJob& job) const {
+  return options_.histories && options_.cuts.looks(job.movie != nullptr);
+}
+
+/// Whether it is of another shot than the frame that was made last.
+bool FrameLoop::begins_shot(const Reading& reading) const {
+  if (!options_.histories || !last_) return false;
+  const FrameJob& job = reading.frame->job;
+  return options_.cuts.between(*last_, job.frame) || (looks_for_cuts(job) && !same_shot(last_sketch_, reading.sketch));
+}
+
+/// The next frame follows none.
+void FrameLoop::begin_shot() {
+  last_.reset();
+  gaps_.clear();
+}
+
 /// Which frame this one follows: the last of its sequence that was made. It was evaluated as if none failed.
 Result<void> FrameLoop::place_in_time(Reading& reading) {
   if (!options_.histories) return {};
-  if (reading.restart) {
-    last_.reset();
-    gaps_.clear();
-  }
-  if (reading.refused) return {};
   reading.request.restart = !last_;
   reading.request.step = last_ ? reading.frame->job.frame - *last_ : 1;
   if (reading.request.step == reading.request.build->context.step) return {};
@@ -230,14 +244,16 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
                        : Overlap{};
   reading->options.halves = halves_suffice(*reading);
   const bool reuse = options_.reuse && several() && runs(*reading);
+  ShotSketch* const sketch = looks_for_cuts(frame.job) ? &reading->sketch : nullptr;
   reading->picture = std::async(std::launch::async,
-                                [this, &frame, reuse, options = reading->options, scaling = reading->scaling,
+                                [this, &frame, reuse, sketch, options = reading->options, scaling = reading->scaling,
                                  header = std::move(planned->header)]() -> Result<Picture> {
                                   const auto start = Clock::now();
                                   const double files = FileTime::of_thread();
                                   auto picture = read_picture(header, options, events_.diagnostics);
                                   if (picture && scaling) scale_picture(*picture, *scaling);
                                   if (picture && reuse) note_content(*picture);
+                                  if (picture && sketch) *sketch = sketch_of(*picture);
                                   frame.steps.read = milliseconds_since(start);
                                   frame.steps.decode =
                                       std::max(0.0, frame.steps.read - (FileTime::of_thread() - files));
@@ -256,11 +272,17 @@ std::size_t FrameLoop::ahead() const {
 /// From the picture that has been read to one that is in flight, and the oldest of those to one that is being written.
 Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
   FrameRecord& frame = *reading->frame;
-  if (auto placed = place_in_time(*reading); !placed)
-    return fail(frame, named(std::move(placed).error(), frame.job), reading->pre_roll);
+  if (reading->restart) begin_shot();
   if (reading->refused) return fail(frame, *reading->refused, reading->pre_roll);
   auto picture = reading->picture.get();
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
+  if (begins_shot(*reading)) {
+    begin_shot();
+    frame.begins_shot = true;
+    events_.note(fmt::format("frame {} begins a shot: effects that look back begin anew", frame.job.frame));
+  }
+  if (auto placed = place_in_time(*reading); !placed)
+    return fail(frame, named(std::move(placed).error(), frame.job), reading->pre_roll);
   if (events_.interrupted()) return interruption();
   // What another run would make of the same files is not this.
   if (notes_ && !has_gap(frame.job)) frame.job.made_of = notes_->text(reading->inputs, reading->request.build->depends);
@@ -302,6 +324,7 @@ Result<void> FrameLoop::finish_running() {
   if (options_.histories && last_ && !reading->request.restart)
     for (const auto& name : replaced) ++replaced_[name];
   last_ = frame.job.frame;
+  last_sketch_ = std::move(reading->sketch);
   if (reading->pre_roll) {
     frame.state = FrameRecord::State::done;
     return {};

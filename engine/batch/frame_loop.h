@@ -19,6 +19,7 @@
 #include "batch/schedule.h"
 #include "batch/write_queue.h"
 #include "image/reader.h"
+#include "image/shot.h"
 #include "image/writer.h"
 #include "session/session.h"
 
@@ -58,6 +59,9 @@ class FrameLoop {
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   void begin_further(Schedule& schedule, std::deque<std::unique_ptr<Reading>>& next, std::size_t& begun,
                      std::size_t most);
+  bool looks_for_cuts(const FrameJob& job) const;
+  bool begins_shot(const Reading& reading) const;
+  void begin_shot();
   Result<void> place_in_time(Reading& reading);
   std::size_t ahead() const;
   Result<void> process(std::unique_ptr<Reading> reading);
@@ -93,6 +97,7 @@ class FrameLoop {
   Overlap overlap_;
   std::map<std::string, int> replaced_;  ///< histories that began anew within a sequence, and in how many frames
   std::optional<int> last_;              ///< number of the frame that the next one follows
+  ShotSketch last_sketch_;               ///< of its picture
   std::vector<std::size_t> gaps_;        ///< places of frames of its sequence that are not in its history: they failed
   std::optional<int> begun_;             ///< number of the frame that was evaluated last
   std::deque<SharedSkips> skips_;        ///< of frames so far, the newest first

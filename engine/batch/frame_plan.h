@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "batch/frame_sink.h"
+#include "image/cuts.h"
 #include "image/reader.h"
 #include "image/scale.h"
 #include "image/writer.h"
@@ -28,6 +29,7 @@ struct FrameLoopOptions {
   bool whole_pre_roll = false;  ///< an earlier frame that cannot be read ends the run: what follows would be another
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: every pass of every frame is looked at, and nothing mended
   bool histories = false;                  ///< pictures depend on the frames before them
+  Cuts cuts;                               ///< where histories begin anew
 };
 
 /// Bytes that a frame takes.

@@ -14,6 +14,7 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/version.h"
+#include "image/sequence.h"
 
 namespace afterglow {
 namespace {
@@ -114,6 +115,14 @@ std::string passes_text(const FrameRecord& frame) {
   return how + table.text("  ");
 }
 
+/// Where effects that look back began anew.
+std::string shots_text(const RunReport& report) {
+  std::vector<int> frames;
+  for (const auto& frame : report.frames)
+    if (frame.begins_shot) frames.push_back(frame.job.frame);
+  return frames.empty() ? "" : fmt::format("shots begin at frames {}\n", frames_text(frames));
+}
+
 std::span<const Skipped> skips_of(const FrameRecord& frame) {
   return frame.skipped ? std::span<const Skipped>(*frame.skipped) : std::span<const Skipped>();
 }
@@ -148,6 +157,7 @@ Json frame_json(const FrameRecord& frame) {
   if (auto found = non_finite_json(frame.non_finite); !found.empty()) out["non_finite"] = std::move(found);
   if (auto found = overflows_json(frame.non_finite); !found.empty()) out["beyond_half_floats"] = std::move(found);
   if (frame.state != FrameRecord::State::done) return out;
+  if (frame.begins_shot) out["begins_shot"] = true;
   out["width"] = frame.size.width;
   out["height"] = frame.size.height;
   const FrameSteps& steps = frame.steps;
@@ -217,6 +227,7 @@ std::string report_text(const RunReport& report, bool passes) {
   out += fmt::format("frames: {} done, {} up to date, {} failed\n", done, count(report, FrameRecord::State::up_to_date),
                      count(report, FrameRecord::State::failed));
   if (report.pre_roll > 0) out += fmt::format("pre-roll: {} earlier frames, not written\n", report.pre_roll);
+  out += shots_text(report);
   Table table({"step", "ms", ""});
   for (const auto& step : steps(report))
     table.add({step.name, fmt::format("{:.1f}", step.milliseconds), note_of(step, done)});

@@ -39,7 +39,8 @@ struct FrameRecord {
   FrameSteps steps;
   FrameTimes times;
   FrameNonFinite non_finite;
-  SharedSkips skipped;  ///< what this frame did not run because of its content
+  SharedSkips skipped;       ///< what this frame did not run because of its content
+  bool begins_shot = false;  ///< nothing was handed on to it, though a frame is before it
 };
 
 /// Those of standard input grow in number, and others point at them.

@@ -58,22 +58,23 @@ std::vector<Sequence> waiting_in_order(FrameRecords& records) {
   return out;
 }
 
-/// The frames before `frame`, nearest first: `most` of them, fewer where `stop` is met.
-std::vector<const FrameJob*> before(const Frames& frames, int frame, int most, const int* stop) {
+/// The frames of its shot before `frame`, nearest first: `most` of them, fewer where `stop` is met.
+std::vector<const FrameJob*> before(const Frames& frames, int frame, int most, const int* stop, const Cuts& cuts = {}) {
   std::vector<const FrameJob*> out;
   for (auto at = frames.lower_bound(frame); at != frames.begin() && static_cast<int>(out.size()) < most;) {
     --at;
-    if (stop && at->first <= *stop) break;
+    if ((stop && at->first <= *stop) || cuts.between(at->first, frame)) break;
     out.push_back(&at->second);
   }
   return out;
 }
 
-void add_sequence(Schedule& out, const Frames& frames, const std::vector<FrameRecord*>& waiting, int pre_roll) {
+void add_sequence(Schedule& out, const Frames& frames, const std::vector<FrameRecord*>& waiting, int pre_roll,
+                  const Cuts& cuts) {
   const int* last = nullptr;  // number of the frame that runs before
   for (FrameRecord* record : waiting) {
     const int frame = record->job.frame;
-    const auto between = before(frames, frame, pre_roll, last);
+    const auto between = before(frames, frame, pre_roll, last, cuts);
     // What the frames between reach back to: the one that ran last, or nothing that is known.
     const int first = between.empty() ? frame : between.back()->frame;
     const auto one_more = before(frames, first, 1, nullptr);
@@ -127,16 +128,17 @@ Schedule plain_schedule(FrameRecords& frames) {
   return counted(std::move(out));
 }
 
-Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll) {
+Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll,
+                                 const Cuts& cuts) {
   Schedule out;
   std::map<std::string, Frames> there;
   for (const auto& sequence : sequences_of(frames)) {
     const auto known = there.emplace(sequence.front()->job.sequence, frames_of(sequence, request)).first;
-    if (!is_one_output(request.output)) add_sequence(out, known->second, waiting_by_number(sequence), pre_roll);
+    if (!is_one_output(request.output)) add_sequence(out, known->second, waiting_by_number(sequence), pre_roll, cuts);
   }
   if (is_one_output(request.output))
     for (const auto& run : waiting_in_order(frames))
-      add_sequence(out, there.at(run.front()->job.sequence), run, pre_roll);
+      add_sequence(out, there.at(run.front()->job.sequence), run, pre_roll, cuts);
   return counted(std::move(out));
 }
 

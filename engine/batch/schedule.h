@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "batch/run_report.h"
+#include "image/cuts.h"
 
 namespace afterglow {
 
@@ -31,8 +32,9 @@ Schedule plain_schedule(FrameRecords& frames);
 /// and what is not behind the frame before it begins anew. The frame before a frame is the one with the next
 /// lower number that there is: among those asked for, and for numbered inputs on disk. So many frames before each frame
 /// run first (`pre_roll`, as far as there are any), unless they run anyway; where the frames between two that are asked
-/// for are more than that, the second begins anew. Frames that are up to date run as pre-roll where they are needed.
-Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll);
+/// for are more than that, the second begins anew. Nothing before a frame that is told to begin a shot runs for it.
+/// Frames that are up to date run as pre-roll where they are needed.
+Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll, const Cuts& cuts);
 
 /// Adds to each job what its output depends on besides its own files: those of so many earlier frames.
 void note_earlier_files(FrameRecords& frames, const FrameListRequest& request, int pre_roll);

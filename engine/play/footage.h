@@ -14,6 +14,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "image/cuts.h"
 #include "image/movie.h"
 #include "image/reader.h"
 
@@ -24,6 +25,7 @@ struct FootageOptions {
   std::string frames;               ///< "1-24x2", for numbered inputs and videos; empty: all there are
   /// Layers and limits; depth and normal may be patterns. What looks need is given to `read`.
   ReadOptions read;
+  Cuts cuts;      ///< where looks begin anew
   int proxy = 1;  ///< pictures are read at one part in this of their sides: 1, 2, 4 or 8
   /// Player: one picture that is a frame of a sequence opens that, and stands at the frame.
   bool whole_sequences = false;

@@ -25,6 +25,12 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
+/// Whether its frames depend on those before them.
+bool has_histories(LiveSession* session) {
+  Stack* const stack = session ? session->live().stack() : nullptr;
+  return stack && stack->build() && !stack->build()->graph.histories.empty();
+}
+
 }  // namespace
 
 void Player::State::wake() {
@@ -236,6 +242,11 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   // Effects that look back go on over frames that were dropped; after a jump they begin anew.
   if (transport.playing() && ran && due.tick > ran->tick && frame.frame > ran->number)
     frame.step = frame.frame - ran->number;
+  const bool looks_back = has_histories(first.get()) || (compare && has_histories(second.get()));
+  if (looks_back && shots.begins(*footage, due.position, read->picture)) {
+    frame.restart = true;
+    frame.step = 1;
+  }
   // By the clock, a frame that must be built does not hold up the others.
   first->build_aside(transport.pacing() == Pacing::real_time);
   if (second) second->build_aside(transport.pacing() == Pacing::real_time);
@@ -252,6 +263,7 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   picture = read;
   picture_proxy = proxy;
   ran = {due.tick, frame.frame};
+  if (looks_back) shots.shown();
   second_runs = compare;
   dirty = false;
   const Size size = read->picture.color.size();
@@ -307,7 +319,7 @@ Result<bool> Player::State::show_due(double now) {
   }
   const auto may_change = [](LiveSession* session) {
     Stack* stack = session ? session->live().stack() : nullptr;
-    return stack && (stack->preset().may_change() || (stack->build() && !stack->build()->graph.histories.empty()));
+    return stack && (stack->preset().may_change() || has_histories(session));
   };
   const bool moves = may_change(first.get()) || may_change(second.get());
   if (same_picture && !moves) {

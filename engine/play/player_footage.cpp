@@ -24,6 +24,7 @@ Result<void> Player::State::open_row(FootageOptions wanted) {
   if (around) wanted.inputs.front() = around->pattern;
   AFTERGLOW_TRY(footage, Footage::open(wanted, diagnostics));
   options.footage = std::move(wanted);
+  shots = ShotWatch(options.footage.cuts);
   transport.set_frames(footage->frames());
   for (int position = 0; around && position < footage->frames(); ++position)
     if (footage->frame(position).number == around->frame) transport.go_to(position, now());

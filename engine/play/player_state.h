@@ -9,6 +9,7 @@
 
 #include "play/footage_watch.h"
 #include "play/player.h"
+#include "play/shot_watch.h"
 #include "play/sound_follower.h"
 #include "session/live_session.h"
 
@@ -52,6 +53,7 @@ struct Player::State {
     double number = 0;
   };
   std::optional<Ran> ran;
+  ShotWatch shots{{}};
   bool time_kernels = false;
   int frames_untimed = 0;    ///< since a kernel was timed
   bool second_runs = false;  ///< B was run for what is on screen

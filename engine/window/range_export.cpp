@@ -162,6 +162,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   out.loop.read.cut_overscan = footage.read.cut_overscan;
   out.loop.read.max_bytes = footage.read.max_bytes;
   out.loop.fps = player.transport().fps();
+  out.loop.cuts = footage.cuts;
   out.files.limits = {out.loop.read.max_side, out.loop.read.max_bytes};
   std::error_code none;
   const bool folder = fs::is_directory(output, none) || !new_folder(output).empty();

@@ -75,36 +75,6 @@ TEST_F(PlayerTest, DropsWhatIsLate) {
   EXPECT_EQ(player.stats().dropped, 3u);
 }
 
-TEST_F(PlayerTest, EffectsThatLookBackGoOnOverDroppedFrames) {
-  write_sequence(8);
-  fs::create_directories(folder_ / "effects");
-  fs::create_directories(folder_ / "shaders");
-  // Counts the frames since the first that it saw.
-  write("effects/clock.lua",
-        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"clock\", doc = \"Counts.\", at = "
-        "\"post_process\",\n  build = function(g, s, source)\n    local before = g:history { name = \"before\", size = "
-        "{ 1, 1 } }\n    local now = g:pass { shader = \"count\", source = before, frames = g.frame_time * g.fps }\n"
-        "    g:keep(before, now)\n    return g:pass { shader = \"show\", source = source, now = now }\n  end }\n");
-  write("shaders/count.glsl", "uniform float frames;\nvec4 apply(vec4 color) { return color + frames; }\n");
-  write("shaders/show.glsl",
-        "uniform sampler2D now;\nvec4 apply(vec4 color) { return vec4(fetch(now, ivec2(0)).rgb, color.a); }\n");
-  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.clock {} }\n");
-  Player& player = open();
-  turn();
-  EXPECT_FLOAT_EQ(result(), 1);
-  player.transport().play(seconds_);
-  seconds_ += 0.1;
-  turn();
-  EXPECT_FLOAT_EQ(result(), 2);
-  seconds_ += 0.3;
-  turn();
-  EXPECT_EQ(player.shown().number, 5);
-  EXPECT_FLOAT_EQ(result(), 5) << "three frames have passed";
-  player.transport().go_to(1, seconds_);
-  turn();
-  EXPECT_FLOAT_EQ(result(), 1) << "a jump begins anew";
-}
-
 /// As `run` reads them.
 TEST_F(PlayerTest, PicturesAreOfTheSpaceThatTheLookSays) {
   write_picture_of(1, 0.5f);
