@@ -18,8 +18,8 @@
 #include "batch/run_report.h"
 #include "batch/schedule.h"
 #include "batch/write_queue.h"
+#include "image/cuts.h"
 #include "image/reader.h"
-#include "image/shot.h"
 #include "image/writer.h"
 #include "session/session.h"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Where shots begin, within one sequence or video: told by numbers of frames, or found by looking.
+// Where shots begin, within one sequence or video: told by numbers of frames, or found by looking (shot.h).
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/result.h"
+#include "image/shot.h"
 
 namespace afterglow {
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "image/metadata.h"
-#include "image/non_finite.h"
+#include "image/picture.h"
 #include "image/sequence.h"
 #include "play/player.h"
 #include "play/player_state.h"

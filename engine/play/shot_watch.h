@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "image/shot.h"
 #include "play/footage.h"
 
 namespace afterglow {

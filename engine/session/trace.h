@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "image/non_finite.h"
 #include "image/picture.h"
 #include "script/preset.h"
 #include "session/stack.h"
