@@ -9,14 +9,23 @@ namespace afterglow {
 
 namespace {
 
+/// Whether it has as many numbers as the shader reads.
+bool is_of(const ParamValue& value, const KernelParam& param) {
+  const int numbers = component_count(param.type) * std::max(param.elements, 1);
+  return value.elements == param.elements && value.v.size() == static_cast<std::size_t>(numbers);
+}
+
 Result<void> check_parameters(const Graph& graph, const KernelBlock& block) {
   for (const auto& param : block.compiled->params) {
     const Pass& pass = pass_of_stage(graph, block.kernel, param.stage);
-    if (!pass.params.contains(param.name)) {
+    const auto given = pass.params.find(param.name);
+    const char* wrong = given == pass.params.end()    ? "lacks"
+                        : is_of(given->second, param) ? nullptr
+                                                      : "has another type of";
+    if (wrong)
       return Error{ErrorKind::script,
-                   fmt::format("pass '{}' lacks the parameter '{}' of its shader", pass.name, param.name), pass.file,
-                   pass.line};
-    }
+                   fmt::format("pass '{}' {} the parameter '{}' of its shader", pass.name, wrong, param.name),
+                   pass.file, pass.line};
   }
   return {};
 }
@@ -25,18 +34,24 @@ bool is_integer(ParamType type) {
   return type == ParamType::int1 || type == ParamType::int2 || type == ParamType::bool1;
 }
 
-/// std140: components of a vector follow each other, 4 bytes each; a bool is a 32-bit 0 or 1.
-void write_value(const ParamValue& value, ParamType type, std::byte* to) {
-  for (int i = 0; i < component_count(type); ++i) {
-    if (is_integer(type)) {
-      const auto number =
-          type == ParamType::bool1 ? std::int32_t{value.v[i] != 0} : static_cast<std::int32_t>(value.v[i]);
-      std::memcpy(to + 4 * i, &number, 4);
-    } else {
-      const auto number = static_cast<float>(value.v[i]);
-      std::memcpy(to + 4 * i, &number, 4);
-    }
+/// 4 bytes; a bool is a 32-bit 0 or 1.
+void write_number(double value, ParamType type, std::byte* to) {
+  if (is_integer(type)) {
+    const auto number = type == ParamType::bool1 ? std::int32_t{value != 0} : static_cast<std::int32_t>(value);
+    std::memcpy(to, &number, 4);
+  } else {
+    const auto number = static_cast<float>(value);
+    std::memcpy(to, &number, 4);
   }
+}
+
+/// std140: components of a vector follow each other; columns of a matrix and elements of an array are 16 bytes apart.
+void write_value(const ParamValue& value, const KernelParam& param, std::byte* to) {
+  constexpr std::size_t kApart = 16;
+  const int side = matrix_side(param.type);
+  const auto vector = static_cast<std::size_t>(side > 0 ? side : component_count(param.type));
+  for (std::size_t i = 0; i < value.v.size(); ++i)
+    write_number(value.v[i], param.type, to + i / vector * kApart + i % vector * 4);
 }
 
 }  // namespace
@@ -75,7 +90,7 @@ Result<void> ParameterBuffer::write(const Graph& graph) {
       const Pass& pass = pass_of_stage(graph, block.kernel, param.stage);
       const auto value = pass.params.find(param.name);
       if (value == pass.params.end()) continue;
-      write_value(value->second, param.type, values_.data() + block.offset + param.offset);
+      write_value(value->second, param, values_.data() + block.offset + param.offset);
     }
   }
   std::memcpy(buffer_.data(), values_.data(), values_.size());

@@ -12,9 +12,16 @@ namespace afterglow {
 namespace {
 
 std::string value_text(const ParamValue& value) {
-  std::vector<std::string> numbers;
-  for (int i = 0; i < component_count(value.type); ++i) numbers.push_back(number_text(value.v[i]));
-  return numbers.size() == 1 ? numbers.front() : "{ " + join(numbers) + " }";
+  const auto in_braces = [](const std::vector<std::string>& texts) {
+    return texts.size() == 1 ? texts.front() : "{ " + join(texts) + " }";
+  };
+  std::vector<std::string> rows;
+  for (const auto& row : rows_of(value)) {
+    std::vector<std::string> numbers;
+    for (const double number : row) numbers.push_back(number_text(number));
+    rows.push_back(in_braces(numbers));
+  }
+  return in_braces(rows);
 }
 
 std::string image_name(const Graph& graph, ImageId id) {

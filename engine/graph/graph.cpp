@@ -141,6 +141,19 @@ bool same_conditions(const Graph& a, const Graph& b) {
 
 }  // namespace
 
+std::vector<std::vector<double>> rows_of(const ParamValue& value) {
+  const auto side = static_cast<std::size_t>(matrix_side(value.type));
+  if (side == 0) {
+    const auto length = static_cast<std::size_t>(component_count(value.type));
+    std::vector<std::vector<double>> rows(value.v.size() / length);
+    for (std::size_t i = 0; i < rows.size() * length; ++i) rows[i / length].push_back(value.v[i]);
+    return rows;
+  }
+  std::vector<std::vector<double>> rows(side);
+  for (std::size_t i = 0; i < value.v.size(); ++i) rows[i % side].push_back(value.v[i]);
+  return rows;
+}
+
 bool is_computed(const Graph& graph, ImageId image) {
   const int producer = graph.images[image].producer;
   return producer >= 0 && graph.passes[producer].kind == PassKind::compute;
@@ -205,7 +218,8 @@ bool same_structure(const Graph& a, const Graph& b) {
         p.params.size() != q.params.size() || p.straight != q.straight || p.lights_black != q.lights_black)
       return false;
     for (auto x = p.params.begin(), y = q.params.begin(); x != p.params.end(); ++x, ++y)
-      if (x->first != y->first || x->second.type != y->second.type) return false;
+      if (x->first != y->first || x->second.type != y->second.type || x->second.elements != y->second.elements)
+        return false;
   }
   return true;
 }

@@ -36,12 +36,17 @@ struct GraphImage {
   bool precise = false;
 };
 
-/// A value for a shader parameter: up to 4 components (bool as 0/1).
+/// A value for a shader parameter (bool as 0/1): component_count numbers, a matrix's column by column; of an array
+/// those of its elements, one behind the other.
 struct ParamValue {
   ParamType type = ParamType::float1;
-  std::array<double, 4> v{};
+  std::vector<double> v{};
+  int elements = 0;  ///< of an array; 0: it is none
   friend bool operator==(const ParamValue&, const ParamValue&) = default;
 };
+
+/// As scripts write it: a single row of numbers, or the rows of a matrix, or the elements of an array.
+std::vector<std::vector<double>> rows_of(const ParamValue& value);
 
 struct PassInput {
   std::string name;  ///< as the shader declares it; "source" for the colour of a pixel pass or of a filter

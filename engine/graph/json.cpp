@@ -10,10 +10,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json value_json(const ParamValue& value) {
-  const int count = component_count(value.type);
-  if (count == 1) return value.type == ParamType::bool1 ? Json(value.v[0] != 0) : Json(value.v[0]);
+  if (value.type == ParamType::bool1) return value.v[0] != 0;
+  const auto json = [](const std::vector<double>& row) { return row.size() == 1 ? Json(row.front()) : Json(row); };
+  const auto rows = rows_of(value);
+  if (rows.size() == 1 && value.elements == 0) return json(rows.front());
   Json array = Json::array();
-  for (int i = 0; i < count; ++i) array.push_back(value.v[i]);
+  for (const auto& row : rows) array.push_back(json(row));
   return array;
 }
 

@@ -80,10 +80,12 @@ int graph_pass(lua_State* lua) {
     }
     table.push(key);
     Argument argument{key.name, {}, {}};
-    if (const ImageRef* image = to_image(lua, -1))
+    if (const ImageRef* image = to_image(lua, -1)) {
       argument.image = *image;
-    else
+    } else {
       argument.value = read_value(lua, -1);
+      argument.numbers = read_numbers(lua, -1, kMostElements);
+    }
     lua_pop(lua, 1);
     request.arguments.push_back(std::move(argument));
   }

@@ -24,24 +24,19 @@ bool is_pass_name(const std::string& name) {
 
 std::string size_text(const Size& size) { return fmt::format("{}×{}", size.width, size.height); }
 
-const char* value_text(ParamType type) {
-  switch (type) {
-    case ParamType::float1:
-      return "a number";
-    case ParamType::float2:
-      return "{ 2 numbers }";
-    case ParamType::float3:
-      return "{ 3 numbers }";
-    case ParamType::float4:
-      return "{ 4 numbers }";
-    case ParamType::int1:
-      return "an integer";
-    case ParamType::int2:
-      return "{ 2 integers }";
-    case ParamType::bool1:
-      return "true, false";
-  }
-  return "";
+/// One value of that type, as scripts write it.
+std::string value_text(ParamType type) {
+  if (type == ParamType::bool1) return "true, false";
+  const bool integer = type == ParamType::int1 || type == ParamType::int2;
+  if (const int side = matrix_side(type)) return fmt::format("{} rows, each {{ {} numbers }}", side, side);
+  const int count = component_count(type);
+  if (count == 1) return integer ? "an integer" : "a number";
+  return fmt::format("{{ {} {} }}", count, integer ? "integers" : "numbers");
+}
+
+std::string value_text(const ShaderParam& param) {
+  const std::string one = value_text(param.type);
+  return param.elements > 0 ? fmt::format("a table of 1 to {}, each {}", param.elements, one) : one;
 }
 
 /// Where an effect promises for all settings that black stays black, it need not be asked what it makes of it.
@@ -241,7 +236,9 @@ void GraphBuilder::check_workgroups(const Pass& pass, const PassRequest& request
     for (const auto& input : of.inputs) out.push_back("sampler2D " + input.name);
     for (const auto& param : of.params)
       out.push_back(fmt::format("{}{} {}{}", param.specialised ? "const " : "", glsl_name(param.type), param.name,
-                                param.specialised ? fmt::format(" = {}", param.default_value) : ""));
+                                param.elements > 0  ? fmt::format("[{}]", param.elements)
+                                : param.specialised ? fmt::format(" = {}", param.default_value)
+                                                    : ""));
     std::ranges::sort(out);
     return out;
   };
@@ -294,8 +291,7 @@ void GraphBuilder::check_complete(const Pass& pass, const ShaderInterface& inter
     if (!has_input(input.name)) fail(pass, fmt::format("shader '{}' needs '{}', an image", pass.shader, input.name));
   for (const auto& param : interface.params)
     if (!param.specialised && !pass.params.contains(param.name))
-      fail(pass, fmt::format("shader '{}' needs the parameter '{}'", pass.shader, param.name), {},
-           value_text(param.type));
+      fail(pass, fmt::format("shader '{}' needs the parameter '{}'", pass.shader, param.name), {}, value_text(param));
 }
 
 void GraphBuilder::bind_image(Pass& pass, const Argument& argument, bool pixelwise) const {
@@ -308,33 +304,59 @@ void GraphBuilder::bind_image(Pass& pass, const Argument& argument, bool pixelwi
 void GraphBuilder::bind_param(Pass& pass, const Argument& argument, const ShaderParam& param) const {
   using Kind = Value::Kind;
   const Value& value = argument.value;
-  const auto wrong = [&](const char* what) {
+  const auto wrong = [&](const std::string& what) {
     fail(pass, fmt::format("{} = {} is {}", param.name, argument.image ? "an image" : value.shown(), what),
-         {param.name}, value_text(param.type));
+         {param.name}, value_text(param));
   };
   const auto components = static_cast<std::size_t>(component_count(param.type));
-  std::array<double, 4> v{};
-  if (param.type == ParamType::bool1) {
+  std::vector<double> v;
+  if (param.elements > 0 || matrix_side(param.type) > 0) {
+    v = rows_for(argument, param, wrong);
+  } else if (param.type == ParamType::bool1) {
     if (argument.image || value.kind != Kind::boolean) wrong("not a boolean");
-    v[0] = value.number;
+    v = {value.number};
   } else if (components == 1) {
     if (argument.image || value.kind != Kind::number) wrong("not a number");
-    v[0] = value.number;
+    v = {value.number};
   } else {
     if (argument.image || value.kind != Kind::list) wrong("not an array of numbers");
     if (static_cast<std::size_t>(value.count) != components) wrong("of another length");
-    v = value.list;
+    v.assign(value.list.begin(), value.list.begin() + value.count);
   }
   const bool integer = param.type == ParamType::int1 || param.type == ParamType::int2;
-  for (std::size_t i = 0; i < components; ++i) {
-    if (!std::isfinite(static_cast<float>(v[i]))) wrong("not finite");
-    if (integer && v[i] != std::floor(v[i])) wrong("not an integer");
-    if (integer && std::abs(v[i]) > std::numeric_limits<int>::max()) wrong("no integer of 32 bits");
+  for (const double number : v) {
+    if (!std::isfinite(static_cast<float>(number))) wrong("not finite");
+    if (integer && number != std::floor(number)) wrong("not an integer");
+    if (integer && std::abs(number) > std::numeric_limits<int>::max()) wrong("no integer of 32 bits");
   }
   if (param.specialised)
-    pass.constants[param.name] = v[0];
+    pass.constants[param.name] = v.front();
   else
-    pass.params[param.name] = {param.type, v};
+    pass.params[param.name] = {param.type, std::move(v), param.elements};
+}
+
+/// The numbers of a matrix or an array as shaders have them; elements that are not given are 0.
+std::vector<double> GraphBuilder::rows_for(const Argument& argument, const ShaderParam& param,
+                                           const std::function<void(const std::string&)>& wrong) {
+  const auto side = static_cast<std::size_t>(matrix_side(param.type));
+  const auto components = static_cast<std::size_t>(component_count(param.type));
+  const Numbers& given = argument.numbers;
+  if (argument.image || given.rows == 0) wrong(side > 0 ? "no matrix" : "no array");
+  const std::size_t columns = side > 0 ? side : components == 1 ? 0 : components;
+  if (given.columns != columns) wrong(side > 0 ? "a matrix of another size" : "an array of other elements");
+  if (side > 0) {
+    if (given.rows != side) wrong("a matrix of another size");
+    std::vector<double> out(components);
+    for (std::size_t row = 0; row < side; ++row)
+      for (std::size_t column = 0; column < side; ++column)
+        out[column * side + row] = given.values[row * side + column];
+    return out;
+  }
+  const auto most = static_cast<std::size_t>(param.elements);
+  if (given.rows > most) wrong("too long");
+  std::vector<double> out = given.values;
+  out.resize(most * components);
+  return out;
 }
 
 Size GraphBuilder::target_size(const Pass& pass, const PassRequest& request) const {

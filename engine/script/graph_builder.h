@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "graph/graph.h"
+#include "script/numbers.h"
 #include "script/preset.h"
 #include "script/script_error.h"
 #include "script/value.h"
@@ -31,6 +33,7 @@ struct Argument {
   std::string name;
   std::optional<ImageRef> image;  ///< else `value`
   Value value;
+  Numbers numbers{};  ///< of a table
 };
 
 struct PassRequest {
@@ -141,6 +144,8 @@ class GraphBuilder {
   void bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
   void bind_image(Pass& pass, const Argument& argument, bool pixelwise) const;
   void bind_param(Pass& pass, const Argument& argument, const ShaderParam& param) const;
+  static std::vector<double> rows_for(const Argument& argument, const ShaderParam& param,
+                                      const std::function<void(const std::string&)>& wrong);
   void check_complete(const Pass& pass, const ShaderInterface& interface, bool needs_source) const;
   Size target_size(const Pass& pass, const PassRequest& request) const;
 

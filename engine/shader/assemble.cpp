@@ -358,8 +358,9 @@ class Assembler {
     if (source.interface.at_pixel) arguments += ", ag_at";
     for (const auto& param : source.interface.params) {
       if (param.specialised) continue;
-      block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
-      out_.params.push_back({stage_count_, param.name, param.type, 0});
+      const std::string array = param.elements > 0 ? fmt::format("[{}]", param.elements) : "";
+      block_ += fmt::format("  {} {}{}{};\n", glsl_name(param.type), prefix, param.name, array);
+      out_.params.push_back({stage_count_, param.name, param.type, 0, param.elements});
     }
     texts_.add(source, prefix, values, readers);
     const std::string function = prefix + info_of(kind).entry;

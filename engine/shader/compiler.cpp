@@ -102,6 +102,15 @@ struct KernelCompiler::State {
 namespace {
 
 /// Compares what the compiler made with what the assembler promised; a difference is a fault of the engine.
+/// Whether that is where the parameter's bytes go.
+bool is_of(const Reflection::Member& member, const KernelParam& param) {
+  const int side = matrix_side(param.type);
+  const int vector = side > 0 ? side : component_count(param.type);
+  return member.components == static_cast<std::uint32_t>(vector) &&
+         member.columns == static_cast<std::uint32_t>(std::max(side, 1)) &&
+         member.elements == static_cast<std::uint32_t>(param.elements);
+}
+
 Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& desc) {
   constexpr int kTogether = 4;  // rows: more of them would not fit into a processor's registers
   KernelFile kernel;
@@ -148,8 +157,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
       continue;
     }
     const auto member = reflection.members.find(fmt::format("ag_s{}_{}", param.stage, param.name));
-    if (member == reflection.members.end() ||
-        member->second.components != static_cast<std::uint32_t>(component_count(param.type)))
+    if (member == reflection.members.end() || !is_of(member->second, param))
       return Error{ErrorKind::other, fmt::format("parameter '{}' is not in the compiled shader", param.name)};
     kernel.offsets.push_back(member->second.offset);
   }

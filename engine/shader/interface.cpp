@@ -37,44 +37,44 @@ std::optional<PassKind> kind_of_entry(std::string_view function) {
 std::string entry_names() { return listed(&PassKindInfo::entry); }
 std::string entry_signatures() { return listed(&PassKindInfo::signature); }
 
-int component_count(ParamType type) {
-  switch (type) {
-    case ParamType::float1:
-      return 1;
-    case ParamType::float2:
-      return 2;
-    case ParamType::float3:
-      return 3;
-    case ParamType::float4:
-      return 4;
-    case ParamType::int1:
-      return 1;
-    case ParamType::int2:
-      return 2;
-    case ParamType::bool1:
-      return 1;
-  }
-  return 0;
+namespace {
+
+struct ParamTypeInfo {
+  ParamType type;
+  const char* glsl;
+  int components;
+  int side;
+};
+constexpr ParamTypeInfo kParamTypes[] = {
+    {ParamType::float1, "float", 1, 0},  {ParamType::float2, "vec2", 2, 0},  {ParamType::float3, "vec3", 3, 0},
+    {ParamType::float4, "vec4", 4, 0},   {ParamType::int1, "int", 1, 0},     {ParamType::int2, "ivec2", 2, 0},
+    {ParamType::bool1, "bool", 1, 0},    {ParamType::matrix2, "mat2", 4, 2}, {ParamType::matrix3, "mat3", 9, 3},
+    {ParamType::matrix4, "mat4", 16, 4},
+};
+
+/// In the order of the enumeration.
+const ParamTypeInfo& info_of(ParamType type) { return kParamTypes[static_cast<std::size_t>(type)]; }
+
+}  // namespace
+
+int component_count(ParamType type) { return info_of(type).components; }
+int matrix_side(ParamType type) { return info_of(type).side; }
+const char* glsl_name(ParamType type) { return info_of(type).glsl; }
+
+std::optional<ParamType> param_type_of(std::string_view glsl_name) {
+  for (const auto& info : kParamTypes)
+    if (glsl_name == info.glsl) return info.type;
+  return std::nullopt;
 }
 
-const char* glsl_name(ParamType type) {
-  switch (type) {
-    case ParamType::float1:
-      return "float";
-    case ParamType::float2:
-      return "vec2";
-    case ParamType::float3:
-      return "vec3";
-    case ParamType::float4:
-      return "vec4";
-    case ParamType::int1:
-      return "int";
-    case ParamType::int2:
-      return "ivec2";
-    case ParamType::bool1:
-      return "bool";
-  }
-  return "";
+const std::vector<std::string>& uniform_types() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const auto& info : kParamTypes) out.push_back(info.glsl);
+    out.push_back("sampler2D");
+    return out;
+  }();
+  return names;
 }
 
 const std::vector<std::string>& pass_keys() {

@@ -58,11 +58,21 @@ std::optional<PassKind> kind_of_entry(std::string_view function);
 std::string entry_names();
 std::string entry_signatures();
 
-/// Types of parameters: float, vec2, vec3, vec4, int, ivec2, bool. A bool or int constant may be specialised.
-enum class ParamType { float1, float2, float3, float4, int1, int2, bool1 };
+/// Types of parameters: float, vec2, vec3, vec4, int, ivec2, bool, mat2, mat3, mat4. A bool or int constant may be
+/// specialised; all but bool and matrices may be arrays.
+enum class ParamType { float1, float2, float3, float4, int1, int2, bool1, matrix2, matrix3, matrix4 };
 
+/// Elements that an array may have.
+inline constexpr int kMostElements = 256;
+
+/// Numbers of a value; of a matrix all of them.
 int component_count(ParamType type);
+/// Rows and columns of a matrix; 0 of the others.
+int matrix_side(ParamType type);
 const char* glsl_name(ParamType type);
+std::optional<ParamType> param_type_of(std::string_view glsl_name);
+/// What a `uniform` may be of, for messages.
+const std::vector<std::string>& uniform_types();
 
 struct ShaderParam {
   std::string name;
@@ -70,6 +80,7 @@ struct ShaderParam {
   bool specialised = false;  ///< a `layout(constant_id = …) const`; else a dynamic `uniform`
   double default_value = 0;  ///< of specialised parameters; dynamic ones must be given
   int line = 0;
+  int elements = 0;  ///< of an array; 0: it is none
 };
 
 struct ShaderInput {

@@ -110,6 +110,7 @@ struct KernelParam {
   ParamType type = ParamType::float1;
   std::uint32_t offset = 0;                      ///< bytes, from SPIR-V reflection
   static constexpr std::uint32_t kUnread = ~0u;  ///< offset of one that the compiled shader does not have
+  int elements = 0;                              ///< of an array; 0: it is none
 };
 
 /// GLSL ready for the compiler, with what the executor must bind.

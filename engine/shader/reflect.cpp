@@ -52,8 +52,13 @@ Result<Reflection> reflect(const std::vector<std::uint32_t>& spirv) {
       Reflection::Member member;
       if (spvc_compiler_type_struct_member_offset(compiler, type, m, &member.offset) != SPVC_SUCCESS)
         return reflection_error(context);
-      member.components =
-          spvc_type_get_vector_size(spvc_compiler_get_type_handle(compiler, spvc_type_get_member_type(type, m)));
+      const spvc_type of = spvc_compiler_get_type_handle(compiler, spvc_type_get_member_type(type, m));
+      member.components = spvc_type_get_vector_size(of);
+      member.columns = spvc_type_get_columns(of);
+      if (const unsigned dimensions = spvc_type_get_num_array_dimensions(of); dimensions > 1)
+        return Error{ErrorKind::other, "the compiled shader has parameters that are arrays of arrays"};
+      else if (dimensions == 1)
+        member.elements = spvc_type_get_array_dimension(of, 0);
       out.members[spvc_compiler_get_member_name(compiler, list[i].base_type_id, m)] = member;
     }
   }

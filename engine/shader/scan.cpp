@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -26,20 +25,6 @@ namespace {
 
 constexpr std::size_t kMaxParams = 256;
 constexpr std::size_t kMaxInputs = 16;
-
-constexpr std::array kParamTypes = {ParamType::float1, ParamType::float2, ParamType::float3, ParamType::float4,
-                                    ParamType::int1,   ParamType::int2,   ParamType::bool1};
-
-std::optional<ParamType> param_type(std::string_view name) {
-  for (const auto type : kParamTypes)
-    if (name == glsl_name(type)) return type;
-  return std::nullopt;
-}
-
-const std::vector<std::string>& uniform_types() {
-  static const std::vector<std::string> kNames = {"float", "vec2", "vec3", "vec4", "int", "ivec2", "bool", "sampler2D"};
-  return kNames;
-}
 
 class ShaderScanner {
  public:
@@ -178,7 +163,7 @@ class ShaderScanner {
       return fail(head, "a library declares no parameters; declare it in the shader and pass it on");
     const std::string id(code_[layout + 4]->text);
     if (!constant_ids_.insert(id).second) return fail(head, fmt::format("constant_id {} is used twice", id));
-    const auto type = param_type(token().text);
+    const auto type = param_type_of(token().text);
     if (!type || component_count(*type) != 1) {
       Error error = fail(line(), fmt::format("a specialised constant cannot be of type '{}'", token().text));
       error.allowed = "bool, int, float";
@@ -218,7 +203,7 @@ class ShaderScanner {
     if (token(1).is("{"))
       return fail(type, fmt::format("uniform blocks are not supported ('{}'); write uniform TYPE NAME;", type.text));
     const bool sampler = type.is("sampler2D");
-    const auto param = param_type(type.text);
+    const auto param = param_type_of(type.text);
     if (!sampler && !param) {
       Error error = fail(type, fmt::format("a uniform cannot be of type '{}'", type.text));
       error.allowed = join(uniform_types());
@@ -228,25 +213,40 @@ class ShaderScanner {
     do {
       ++at_;
       const Token name = token();
-      if (name.is("[")) return fail(name, "arrays of uniforms are not supported; declare each by its name");
+      if (name.is("["))
+        return fail(name, fmt::format("the number of elements stands behind the name: uniform {} NAME[N];", type.text));
       if (!name.is_identifier()) return fail(line(), "the uniform has no name");
       ++at_;
-      if (token().is("["))
-        return fail(name,
-                    fmt::format("'{}': arrays of uniforms are not supported; declare each by its name", name.text));
+      AFTERGLOW_TRY(const int elements, elements_of(name, param));
       if (token().is("="))
         return fail(name, fmt::format("'{}': a uniform has no default value; the effect gives it", name.text));
       if (sampler) {
         AFTERGLOW_CHECK(add_input({std::string(name.text), false, name.line}, name));
         AFTERGLOW_CHECK(add_name(name, false));
       } else {
-        AFTERGLOW_CHECK(add_param({std::string(name.text), *param, false, 0, name.line}, name));
+        AFTERGLOW_CHECK(add_param({std::string(name.text), *param, false, 0, name.line, elements}, name));
       }
     } while (token().is(","));
     if (!token().is(";")) return fail(*code_[at_ - 1], "';' is missing after the uniform");
     ++at_;
     out_.edits.push_back({code_[begin_]->offset, code_[at_ - 1]->end()});
     return {};
+  }
+
+  /// `[N]` behind the name of a uniform; 0 where there is none. Samplers have no `param`.
+  Result<int> elements_of(const Token& name, std::optional<ParamType> param) {
+    if (!token().is("[")) return 0;
+    if (!param || matrix_side(*param) > 0 || *param == ParamType::bool1)
+      return fail(name,
+                  fmt::format("'{}': arrays of this type are not supported; declare each by its name", name.text));
+    const auto elements = literal_value(token(1), ParamType::int1);
+    if (!elements || *elements < 1 || *elements > kMostElements || !token(2).is("]") || token(3).is("[")) {
+      Error error = fail(name, fmt::format("'{}': the number of elements is one whole number", name.text));
+      error.allowed = fmt::format("1 to {}", kMostElements);
+      return error;
+    }
+    at_ += 3;
+    return static_cast<int>(*elements);
   }
 
   /// `layout(local_size_x = N, …) in;`, at `in`.

@@ -51,10 +51,21 @@ class Flattener {
   struct Type {
     std::uint32_t component = 0, count = 0;  ///< of 32-bit numbers
   };
+  struct Matrix {
+    std::uint32_t column = 0, count = 0;  ///< a type, and how many of it
+  };
+  static constexpr std::uint32_t kColumn = 16;  ///< bytes from one to the next
+  /// Types that indices lead through.
+  struct Aggregates {
+    std::map<std::uint32_t, Words> structs;          // members
+    std::map<std::uint32_t, std::uint32_t> arrays;   // elements
+    std::map<std::uint32_t, std::uint32_t> strides;  // of arrays
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> offsets;
+  };
 
   void look() {
     std::map<std::uint32_t, std::uint32_t> pointees;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> offsets;
+    Aggregates known;
     std::map<std::uint32_t, std::uint32_t> blocks, constants;  // variable → struct; id → value
     std::set<std::uint32_t> pushed;
     for (const auto& i : module_.code) {
@@ -62,7 +73,12 @@ class Flattener {
       if (i.op == spv::OpEntryPoint) entry_ = w[2];
       if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationBuiltIn && w[3] == spv::BuiltInFragCoord)
         position_ = w[1];
-      if (i.op == spv::OpMemberDecorate && w.size() == 5 && w[3] == spv::DecorationOffset) offsets[{w[1], w[2]}] = w[4];
+      if (i.op == spv::OpMemberDecorate && w.size() == 5 && w[3] == spv::DecorationOffset)
+        known.offsets[{w[1], w[2]}] = w[4];
+      if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationArrayStride) known.strides[w[1]] = w[3];
+      if (i.op == spv::OpTypeStruct) known.structs[w[1]].assign(w.begin() + 2, w.end());
+      if (i.op == spv::OpTypeArray) known.arrays[w[1]] = w[2];
+      if (i.op == spv::OpTypeMatrix && types_.contains(w[2])) matrices_[w[1]] = {w[2], w[3]};
       if ((i.op == spv::OpTypeInt || i.op == spv::OpTypeFloat) && w[2] == 32) types_[w[1]] = {w[1], 1};
       if (i.op == spv::OpTypeInt && w[2] == 32 && w[3] == 0) bits_ = w[1];
       if (i.op == spv::OpTypeVector && types_.contains(w[2])) types_[w[1]] = {w[2], w[3]};
@@ -72,14 +88,41 @@ class Flattener {
         blocks[i.result] = pointees[i.type];
         if (w[3] == spv::StorageClassPushConstant) pushed.insert(i.result);
       }
-      if (i.op == spv::OpAccessChain && blocks.contains(w[3]) && (w.size() == 5 || w.size() == 6) &&
-          std::all_of(w.begin() + 4, w.end(), [&](std::uint32_t id) { return constants.contains(id); })) {
-        const auto offset = offsets.find({blocks[w[3]], constants[w[4]]});
-        if (offset == offsets.end()) continue;
-        chains_[i.result] = {!pushed.contains(w[3]), offset->second + (w.size() == 6 ? 4 * constants[w[5]] : 0)};
-      }
+      if (i.op != spv::OpAccessChain || !blocks.contains(w[3])) continue;
+      if (!std::all_of(w.begin() + 4, w.end(), [&](std::uint32_t id) { return constants.contains(id); })) continue;
+      Words indices(w.begin() + 4, w.end());
+      for (auto& index : indices) index = constants[index];
+      if (const auto offset = offset_of(known, blocks[w[3]], indices))
+        chains_[i.result] = {!pushed.contains(w[3]), *offset};
     }
     for (const auto& [variable, type] : blocks) variables_.insert(variable);
+  }
+
+  /// Bytes from the block's beginning to where the indices lead.
+  std::optional<std::uint32_t> offset_of(const Aggregates& known, std::uint32_t type, const Words& indices) const {
+    std::uint32_t offset = 0;
+    for (const std::uint32_t index : indices) {
+      if (const auto members = known.structs.find(type); members != known.structs.end()) {
+        const auto member = known.offsets.find({type, index});
+        if (member == known.offsets.end()) return std::nullopt;
+        offset += member->second;
+        type = members->second[index];
+      } else if (const auto element = known.arrays.find(type); element != known.arrays.end()) {
+        const auto stride = known.strides.find(type);
+        if (stride == known.strides.end()) return std::nullopt;
+        offset += index * stride->second;
+        type = element->second;
+      } else if (const auto matrix = matrices_.find(type); matrix != matrices_.end()) {
+        offset += index * kColumn;
+        type = matrix->second.column;
+      } else if (const auto vector = types_.find(type); vector != types_.end()) {
+        offset += index * 4;
+        type = vector->second.component;
+      } else {
+        return std::nullopt;
+      }
+    }
+    return offset;
   }
 
   bool reads(const Instruction& i) const { return i.op == spv::OpLoad && chains_.contains(i.words[3]); }
@@ -88,7 +131,7 @@ class Flattener {
   bool understood(const Instruction& i) const {
     if (i.op == spv::OpName || i.op == spv::OpDecorate || i.op == spv::OpVariable) return true;
     if (i.op == spv::OpAccessChain && variables_.contains(i.words[3])) return chains_.contains(i.result);
-    if (reads(i)) return types_.contains(i.type);
+    if (reads(i)) return types_.contains(i.type) || matrices_.contains(i.type);
     return std::ranges::none_of(i.ids, [&](std::uint16_t word) {
       return variables_.contains(i.words[word]) || (chains_.contains(i.words[word]) && i.words[word] != i.result);
     });
@@ -98,8 +141,7 @@ class Flattener {
   bool number(std::uint32_t most_locations) {
     std::set<GivenNumber> numbers;
     for (const auto& i : module_.code)
-      if (reads(i))
-        for (std::uint32_t c = 0; c < types_.at(i.type).count; ++c) numbers.insert(part(chains_.at(i.words[3]), c));
+      if (reads(i)) add_numbers(i.type, chains_.at(i.words[3]), numbers);
     numbers_.assign(numbers.begin(), numbers.end());
     for (const std::uint32_t locations : kLocations) {
       locations_ = std::min(locations, most_locations);
@@ -108,32 +150,49 @@ class Flattener {
     return false;
   }
 
-  static GivenNumber part(GivenNumber number, std::uint32_t component) {
-    number.offset += 4 * component;
+  void add_numbers(std::uint32_t type, const GivenNumber& from, std::set<GivenNumber>& numbers) const {
+    if (const auto matrix = matrices_.find(type); matrix != matrices_.end())
+      for (std::uint32_t c = 0; c < matrix->second.count; ++c)
+        add_numbers(matrix->second.column, behind(from, kColumn * c), numbers);
+    else
+      for (std::uint32_t c = 0; c < types_.at(type).count; ++c) numbers.insert(behind(from, 4 * c));
+  }
+
+  static GivenNumber behind(GivenNumber number, std::uint32_t bytes) {
+    number.offset += bytes;
     return number;
   }
 
   void copy(const Instruction& i) {
     if (i.op == spv::OpAccessChain && chains_.contains(i.result)) return;
     if (reads(i))
-      load(i, chains_.at(i.words[3]));
+      load(i.type, i.result, chains_.at(i.words[3]));
     else if (i.op == spv::OpLoad && i.words[3] == position_)
       read_all(i);
     else
       code_.push_back(i);
   }
 
-  void load(const Instruction& i, const GivenNumber& from) {
-    const Type type = types_.at(i.type);
+  void load(std::uint32_t of, std::uint32_t result, const GivenNumber& from) {
+    if (const auto matrix = matrices_.find(of); matrix != matrices_.end()) {
+      Words columns;
+      for (std::uint32_t c = 0; c < matrix->second.count; ++c) {
+        columns.push_back(module_.fresh());
+        load(matrix->second.column, columns.back(), behind(from, kColumn * c));
+      }
+      code_.push_back(Instruction::of_ids(spv::OpCompositeConstruct, of, result, columns));
+      return;
+    }
+    const Type type = types_.at(of);
     const std::uint32_t bits = bits_of(type.count);
     Words parts;
     for (std::uint32_t c = 0; c < type.count; ++c) {
-      const auto at = std::ranges::lower_bound(numbers_, part(from, c));
+      const auto at = std::ranges::lower_bound(numbers_, behind(from, 4 * c));
       const auto place = static_cast<std::uint32_t>(at - numbers_.begin());
       parts.push_back(extract(add(spv::OpLoad, bits_of(4), {input(place / 4)}), place % 4));
     }
     const std::uint32_t read = type.count == 1 ? parts[0] : add(spv::OpCompositeConstruct, bits, parts);
-    code_.push_back(Instruction::of_ids(bits == i.type ? spv::OpCopyObject : spv::OpBitcast, i.type, i.result, {read}));
+    code_.push_back(Instruction::of_ids(bits == of ? spv::OpCopyObject : spv::OpBitcast, of, result, {read}));
   }
 
   /// The pixel's place, and 0, which takes all numbers: what is behind the last one is 0, as the driver cannot know.
@@ -210,6 +269,7 @@ class Flattener {
   Module& module_;
   std::vector<Instruction> code_, declarations_;
   std::map<std::uint32_t, Type> types_;
+  std::map<std::uint32_t, Matrix> matrices_;
   std::map<std::uint32_t, GivenNumber> chains_;
   std::set<std::uint32_t> variables_;
   std::vector<GivenNumber> numbers_;               ///< in the order of their places

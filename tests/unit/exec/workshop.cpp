@@ -152,9 +152,7 @@ ParamValue number(double value) { return {ParamType::float1, {value}}; }
 
 ParamValue vector(std::initializer_list<double> values) {
   static constexpr ParamType kTypes[] = {ParamType::float1, ParamType::float2, ParamType::float3, ParamType::float4};
-  ParamValue out{kTypes[values.size() - 1], {}};
-  std::copy(values.begin(), values.end(), out.v.begin());
-  return out;
+  return {kTypes[values.size() - 1], values};
 }
 
 Device& Workshop::device() { return *shared_device; }

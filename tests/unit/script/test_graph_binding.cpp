@@ -10,6 +10,7 @@ namespace afterglow::test {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::Pair;
 
 // One effect `probe` whose build has the given statements (its first line is line 4) and a few shaders.
@@ -253,6 +254,53 @@ TEST_F(Binding, ReturningTheSourceIsReported) {
   const Graph graph = this->graph("return source");
   ASSERT_EQ(graph.skipped.size(), 1u);
   EXPECT_EQ(graph.skipped[0].reason, "returned its source");
+}
+
+/// Scripts write matrices row by row, GLSL keeps them column by column.
+TEST_F(Binding, MatricesAndArrays) {
+  scene.write(
+      "shaders/turn.glsl",
+      "uniform mat3 turn;\nuniform float weights[4];\nuniform vec2 places[3];\nuniform int order[2];\n"
+      "vec4 apply(vec4 color) { return vec4(turn * color.rgb * weights[order[0]], color.a) + places[2].xyxy; }");
+  const auto pass = [&](const std::string& turn, const std::string& weights, const std::string& places) {
+    return graph("return g:pass { shader = 'turn', source = source, order = { 3, 1 }, turn = " + turn +
+                 ", weights = " + weights + ", places = " + places + " }")
+        .passes[0];
+  };
+  const std::string rows = "{ { 1, 2, 3 }, { 4, 5, 6 }, { 7, 8, 9 } }";
+  const Pass whole = pass(rows, "{ 0.5, 1, 2, 4 }", "{ { 1, 2 }, { 3, 4 }, { 5, 6 } }");
+  EXPECT_EQ(whole.params.at("turn"), (ParamValue{ParamType::matrix3, {1, 4, 7, 2, 5, 8, 3, 6, 9}}));
+  EXPECT_EQ(whole.params.at("weights"), (ParamValue{ParamType::float1, {0.5, 1, 2, 4}, 4}));
+  EXPECT_EQ(whole.params.at("places"), (ParamValue{ParamType::float2, {1, 2, 3, 4, 5, 6}, 3}));
+  EXPECT_EQ(whole.params.at("order"), (ParamValue{ParamType::int1, {3, 1}, 2}));
+  EXPECT_EQ(rows_of(whole.params.at("turn")).at(1), (std::vector<double>{4, 5, 6}));
+  const Pass shorter = pass(rows, "{ 7 }", "{ { 1, 2 } }");
+  EXPECT_EQ(shorter.params.at("weights"), (ParamValue{ParamType::float1, {7, 0, 0, 0}, 4})) << "the rest is 0";
+  EXPECT_EQ(shorter.params.at("places"), (ParamValue{ParamType::float2, {1, 2, 0, 0, 0, 0}, 3}));
+}
+
+TEST_F(Binding, WhatIsNoMatrixOrArrayIsToldSo) {
+  scene.write("shaders/turn.glsl",
+              "uniform mat2 turn;\nuniform vec3 colors[2];\nuniform int order[2];\n"
+              "vec4 apply(vec4 color) { return vec4(turn * color.rg, colors[order[1]].xy); }");
+  const auto error = [&](const std::string& turn, const std::string& colors, const std::string& order) {
+    scene.effect("probe", "build = function(g, s, source) return g:pass { shader = 'turn', source = source, turn = " +
+                              turn + ", colors = " + colors + ", order = " + order + " } end,");
+    scene.stack("fx.probe {}");
+    return scene.build_error();
+  };
+  const std::string turn = "{ { 1, 0 }, { 0, 1 } }", colors = "{ { 1, 2, 3 } }", order = "{ 1, 0 }";
+  EXPECT_THAT(error("1", colors, order), HasSubstr("turn = 1 is no matrix; allowed: 2 rows, each { 2 numbers }"));
+  EXPECT_THAT(error("{ 1, 0, 0, 1 }", colors, order), HasSubstr("turn = {1, 0, 0, 1} is a matrix of another size"));
+  EXPECT_THAT(error("{ { 1, 0 } }", colors, order), HasSubstr("is a matrix of another size"));
+  EXPECT_THAT(error("{ { 1, 0 }, { 0 } }", colors, order), HasSubstr("is no matrix"));
+  EXPECT_THAT(error("{ { 1, 0 }, { 0, 0/0 } }", colors, order), HasSubstr("turn = a table is not finite"));
+  EXPECT_THAT(error(turn, "{}", order), HasSubstr("is no array; allowed: a table of 1 to 2, each { 3 numbers }"));
+  EXPECT_THAT(error(turn, "{ 1, 2 }", order), HasSubstr("colors = {1, 2} is an array of other elements"));
+  EXPECT_THAT(error(turn, "{ { 1, 2, 3 }, { 1, 2, 3 }, { 1, 2, 3 } }", order),
+              HasSubstr("colors = a table is too long"));
+  EXPECT_THAT(error(turn, colors, "{ 0.5 }"), HasSubstr("is not an integer"));
+  EXPECT_THAT(error(turn, colors, "source"), HasSubstr("order = an image is no array"));
 }
 
 TEST_F(Binding, SettingsReachThePass) {

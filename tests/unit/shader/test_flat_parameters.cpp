@@ -108,6 +108,48 @@ vec4 sample_at(ivec2 pixel) { return a + vec4(b, d) + vec4(c, c); }
   EXPECT_EQ(locations(compiled(kBits, true)), 8u);
 }
 
+/// Whole matrices, columns and numbers of them, and elements of arrays, wherever they lie in the block.
+TEST(FlatParameters, MatricesAndElementsArriveAsTheyAre) {
+  constexpr const char* kText = R"(uniform float one;
+uniform mat3 whole;
+uniform mat2 part;
+uniform vec2 pairs[3];
+uniform float last[4];
+vec4 sample_at(ivec2 pixel) {
+  vec3 v = whole * vec3(float(pixel.x), 2.0, one);
+  return vec4(v.xy + part[1] + pairs[2], v.z + part[0][1] + last[3], last[1] * pairs[1].y);
+}
+)";
+  KernelRunner runner;
+  const auto filled = [](const CompiledKernel& kernel) {
+    std::vector<std::byte> bytes(kernel.block_size);
+    for (std::size_t i = 0; 4 * i < bytes.size(); ++i) {
+      const float number = 0.25f * static_cast<float>(i) - 3;
+      std::memcpy(&bytes[4 * i], &number, 4);
+    }
+    return bytes;
+  };
+  const CompiledKernel plain = compiled(kText, false), flat = compiled(kText, true);
+  EXPECT_EQ(plain.block_size, 16u + 3 * 16 + 2 * 16 + 3 * 16 + 4 * 16);
+  ASSERT_TRUE(flat.flat_parameters);
+  const TestImage want = runner.run(plain, {}, {9, 2}, filled(plain));
+  EXPECT_NE(want.rgba[0], want.rgba[4]);
+  EXPECT_EQ(runner.run(flat, {}, {9, 2}, filled(flat)).rgba, want.rgba);
+  const auto modules = flat_parameters(flat.spirv, 16);
+  ASSERT_TRUE(modules);
+  EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(modules->vertex));
+  EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(modules->fragment));
+  // An element that the pixel chooses is read from the block.
+  constexpr const char* kChosen = R"(uniform float of[4];
+uniform float one;
+vec4 sample_at(ivec2 pixel) { return vec4(of[pixel.x % 4] * one); }
+)";
+  const CompiledKernel chosen = compiled(kChosen, true), unchosen = compiled(kChosen, false);
+  EXPECT_FALSE(flat_parameters(chosen.spirv, 16));
+  EXPECT_EQ(runner.run(chosen, {}, {9, 2}, filled(chosen)).rgba, runner.run(unchosen, {}, {9, 2}, filled(chosen)).rgba);
+  EXPECT_EQ(runner.validation_errors(), 0);
+}
+
 TEST(FlatParameters, WithoutParametersNothingIsDone) {
   const CompiledKernel none = compiled("vec4 sample_at(ivec2 pixel) { return vec4(pixel, 0.0, 1.0); }\n", true);
   EXPECT_FALSE(flat_parameters(none.spirv, 16));

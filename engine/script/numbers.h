@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Tables of many numbers, as scripts give them for matrices and arrays of a shader. Internal to the room.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "script/lua.h"
+
+namespace afterglow::script {
+
+/// Rows of numbers, or numbers alone.
+struct Numbers {
+  std::size_t rows = 0;     ///< 0: it is no such table
+  std::size_t columns = 0;  ///< of each row; 0: each is a number, and no table
+  std::vector<double> values;
+};
+
+/// Of a table in which all rows are alike and have four numbers at most. Of a longer one than `most` rows the
+/// beginning, one row more than that, so that whoever takes it can tell.
+Numbers read_numbers(lua_State* lua, int index, std::size_t most);
+
+}  // namespace afterglow::script
