@@ -9,6 +9,7 @@ extern "C" {
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -79,6 +80,26 @@ bool is_told_elsewhere(const AVStream& from) {
 bool is_attachment(const AVOutputFormat& format, const AVStream& from) {
   return from.codecpar->codec_type == AVMEDIA_TYPE_ATTACHMENT && std::string_view(format.name) == "matroska" &&
          av_dict_get(from.metadata, "filename", nullptr, 0) && av_dict_get(from.metadata, "mimetype", nullptr, 0);
+}
+
+bool can_copy(const AVOutputFormat& format, const AVStream& from) {
+  const AVMediaType kind = from.codecpar->codec_type;
+  const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
+  return (known && can_hold(format, from)) || is_attachment(format, from);
+}
+
+/// Containers that are written and take all of these streams: "; .mov, .mkv take it". Empty: none does.
+std::string who_takes(const std::vector<const AVStream*>& streams) {
+  std::vector<std::string> names;
+  for (const auto& [extension, muxer] :
+       {std::pair(".mp4", "mp4"), {".mov", "mov"}, {".mkv", "matroska"}, {".webm", "webm"}}) {
+    const AVOutputFormat* format = av_guess_format(muxer, nullptr, nullptr);
+    if (format && std::ranges::all_of(streams, [&](const AVStream* one) { return can_copy(*format, *one); }))
+      names.emplace_back(extension);
+  }
+  if (names.empty()) return "";
+  return fmt::format("; {} {} {}", join(names), names.size() == 1 ? "takes" : "take",
+                     streams.size() == 1 ? "it" : "them");
 }
 
 void move(AVPacket& packet, std::int64_t microseconds, AVRational clock) {
@@ -164,8 +185,7 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
   AVFormatContext& out = output_.container();
   const AVStream& from = *input_->streams[index];
   const AVMediaType kind = from.codecpar->codec_type;
-  const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
-  const bool held = (known && can_hold(*out.oformat, from)) || is_attachment(*out.oformat, from);
+  const bool held = can_copy(*out.oformat, from);
   if (!held && kind == AVMEDIA_TYPE_SUBTITLE) texts_[index] = FfmpegSubtitles::open(from, *out.oformat);
   if (!held && !texts_[index]) return static_cast<AVStream*>(nullptr);
   AVStream* to = avformat_new_stream(&out, nullptr);
@@ -185,6 +205,7 @@ Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagn
   AVFormatContext& out = output_.container();
   const bool sound_only = what == Copied::sound;
   std::vector<std::string> left, pictures;
+  std::vector<const AVStream*> left_streams;
   const int worked_on = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   bool sound = false;
   target_.assign(input_->nb_streams, -1);
@@ -201,8 +222,10 @@ Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagn
     AFTERGLOW_TRY(const AVStream* to, add_stream(i));
     if (to)
       target_[i] = to->index;
-    else if (!is_told_elsewhere(from))
+    else if (!is_told_elsewhere(from)) {
       left.push_back(stream_name(from, i));
+      left_streams.push_back(&from);
+    }
   }
   if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
   if (!sound_only) av_dict_copy(&out.metadata, input_->metadata, AV_DICT_DONT_OVERWRITE);
@@ -210,8 +233,9 @@ Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagn
     diagnostics.warn(fmt::format("{}: of the pictures of {} one stream is worked on; {} {} left out", name,
                                  file_.string(), join(pictures), pictures.size() == 1 ? "is" : "are"));
   if (!left.empty())
-    diagnostics.warn(fmt::format("{}: {} of {} cannot be held by {} and {} left out", name, join(left), file_.string(),
-                                 out.oformat->name, left.size() == 1 ? "is" : "are"));
+    diagnostics.warn(fmt::format("{}: {} of {} cannot be held by {} and {} left out{}", name, join(left),
+                                 file_.string(), out.oformat->name, left.size() == 1 ? "is" : "are",
+                                 who_takes(left_streams)));
   return {};
 }
 

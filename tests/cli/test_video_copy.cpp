@@ -32,8 +32,9 @@ TEST_F(VideoOut, SoundOfAnotherFileIsCopied) {
 /// MOV and MP4 refuse some sound only at their head; FLAC goes into MP4.
 TEST_F(VideoOut, SoundThatTheHeadRefusesIsLeftOut) {
   make_frames(3);
-  for (const auto& [codec, encoder, held] :
-       {std::tuple("flac", "flac", "mp4"), {"opus", "libopus", "mp4"}, {"truehd", "truehd -strict -2", ""}}) {
+  for (const auto& [codec, encoder, held, takers] : {std::tuple("flac", "flac", "mp4", ".mp4, .mkv take it"),
+                                                     {"opus", "libopus", "mp4", ".mp4, .mkv, .webm take it"},
+                                                     {"truehd", "truehd -strict -2", "", ".mkv takes it"}}) {
     ASSERT_EQ(shell(std::string("ffmpeg -v error -y -framerate 24 -start_number 1001 -i in/%04d.ppm -f lavfi -i "
                                 "sine=duration=0.2:sample_rate=48000,aformat=channel_layouts=stereo -c:v ffv1 -c:a ") +
                     encoder + " in.mkv")
@@ -50,7 +51,7 @@ TEST_F(VideoOut, SoundThatTheHeadRefusesIsLeftOut) {
         EXPECT_THAT(outcome.err, Not(HasSubstr("audio"))) << codec;
       } else {
         EXPECT_TRUE(sounds.empty()) << codec << " in " << container;
-        EXPECT_THAT(outcome.err, HasSubstr(left));
+        EXPECT_THAT(outcome.err, HasSubstr(left + " and is left out; " + takers + "\n"));
       }
     }
   }
@@ -297,6 +298,7 @@ TEST_F(VideoOut, SubtitlesBecomeThoseOfTheContainer) {
     const Outcome outcome = run({"run", "look.lua", "in.mkv", "-o", name});
     ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("attachment 3 (none) of in.mkv cannot be held by"));
+    EXPECT_THAT(outcome.err, HasSubstr("; .mkv takes it\n"));
     EXPECT_EQ(probe(name, "-select_streams s -show_streams").at("streams").at(0).at("codec_name"), codec);
     EXPECT_EQ(cues(name), before) << name;
   }
