@@ -130,8 +130,10 @@ void add_files(CLI::App& app, RunArguments& a) {
          "the codec and the pictures' depth)")
       ->type_name("NAME")
       ->group(video);
-  app.add_option("--audio", a.audio,
-                 "Sound from this file, copied as it is (default: that of a video input); none: no sound")
+  app.add_option(
+         "--audio", a.audio,
+         "Sound from this file (default: that of a video input), encoded only where the container does not take it; "
+         "copy: only what it takes; none: no sound")
       ->type_name("FILE")
       ->group(video);
   app.add_flag("--keep-partial", a.keep_partial, "An interrupted video is ended as a shorter one that is whole")

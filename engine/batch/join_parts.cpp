@@ -54,7 +54,7 @@ Result<void> check_parts(const BatchRequest& request, const std::vector<FrameJob
     return check_pictures(outputs, request.files, request.loop.write);
   }
   const auto& audio = request.loop.write.video.audio;
-  if (!audio.empty() && audio != kNoAudio && !is_file(audio)) return missing_file(audio);
+  if (is_audio_file(audio) && !is_file(audio)) return missing_file(audio);
   AFTERGLOW_TRY(const WholeVideo video, whole_video(request, frames));
   return {};
 }

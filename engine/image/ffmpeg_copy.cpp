@@ -18,6 +18,7 @@ extern "C" {
 #include "image/ffmpeg_facts.h"
 #include "image/ffmpeg_index.h"
 #include "image/ffmpeg_log.h"
+#include "image/ffmpeg_opus_delay.h"
 
 namespace afterglow {
 namespace {
@@ -88,19 +89,33 @@ bool can_copy(const AVOutputFormat& format, const AVStream& from) {
   return (known && can_hold(format, from)) || is_attachment(format, from);
 }
 
-/// Containers that are written and take all of these streams: "; .mov, .mkv take it". Empty: none does.
-std::string who_takes(const std::vector<const AVStream*>& streams) {
+/// Streams that one message is about.
+struct Named {
   std::vector<std::string> names;
-  for (const auto& [extension, muxer] :
-       {std::pair(".mp4", "mp4"), {".mov", "mov"}, {".mkv", "matroska"}, {".webm", "webm"}}) {
-    const AVOutputFormat* format = av_guess_format(muxer, nullptr, nullptr);
-    if (format && std::ranges::all_of(streams, [&](const AVStream* one) { return can_copy(*format, *one); }))
-      names.emplace_back(extension);
+  std::vector<const AVStream*> streams;
+
+  bool one() const { return streams.size() == 1; }
+  void add(const AVStream& stream, unsigned index) {
+    names.push_back(stream_name(stream, index));
+    streams.push_back(&stream);
   }
-  if (names.empty()) return "";
-  return fmt::format("; {} {} {}", join(names), names.size() == 1 ? "takes" : "take",
-                     streams.size() == 1 ? "it" : "them");
-}
+  /// "audio 2 (flac) of a.mkv is"
+  std::string of(const std::filesystem::path& file) const {
+    return fmt::format("{} of {} {}", join(names), file.string(), one() ? "is" : "are");
+  }
+  /// Containers that are written and take all of them: "; .mov, .mkv take it". Empty: none does.
+  std::string takers() const {
+    std::vector<std::string> found;
+    for (const auto& [extension, muxer] :
+         {std::pair(".mp4", "mp4"), {".mov", "mov"}, {".mkv", "matroska"}, {".webm", "webm"}}) {
+      const AVOutputFormat* format = av_guess_format(muxer, nullptr, nullptr);
+      if (format && std::ranges::all_of(streams, [&](const AVStream* each) { return can_copy(*format, *each); }))
+        found.emplace_back(extension);
+    }
+    if (found.empty()) return "";
+    return fmt::format("; {} {} {}", join(found), found.size() == 1 ? "takes" : "take", one() ? "it" : "them");
+  }
+};
 
 void move(AVPacket& packet, std::int64_t microseconds, AVRational clock) {
   const std::int64_t by = av_rescale_q(microseconds, kMicroseconds, clock);
@@ -139,13 +154,14 @@ FfmpegCopy::~FfmpegCopy() {
   if (input_) avformat_close_input(&input_);
 }
 
-Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path& file, Copied what,
+Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path& file, Copied what, bool encodes,
                                                      FfmpegOutput& output, const CopyRange& range,
                                                      const Patience& patience, const std::string& name,
                                                      Diagnostics& diagnostics) {
   std::unique_ptr<FfmpegCopy> copy(new FfmpegCopy(output));
   copy->file_ = file;
   copy->range_ = range;
+  copy->encodes_ = encodes;
   AFTERGLOW_TRY(copy->bytes_, FfmpegBytes::open(file, patience));
   copy->input_ = copy->bytes_->container();
   if (!copy->input_) return Error{ErrorKind::io, "there is no memory to open it", file.string()};
@@ -158,6 +174,7 @@ Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path
   if (code < 0 || copy->bytes_->given_up()) return copy->cannot_be_read(code);
   copy->follow_clock(what, patience);
   AFTERGLOW_CHECK(copy->add_streams(what, name, diagnostics));
+  copy->cut_sound();
   if (what != Copied::sound) copy->add_chapters();
   return copy;
 }
@@ -180,22 +197,26 @@ Error FfmpegCopy::cannot_be_read(int code) const {
   return {ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file_.string()};
 }
 
-/// As it is, or as other text; null where the container holds neither.
+/// As it is, or as other text or sound; null where the container holds none of it.
 Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
   AVFormatContext& out = output_.container();
   const AVStream& from = *input_->streams[index];
   const AVMediaType kind = from.codecpar->codec_type;
   const bool held = can_copy(*out.oformat, from);
   if (!held && kind == AVMEDIA_TYPE_SUBTITLE) texts_[index] = FfmpegSubtitles::open(from, *out.oformat);
-  if (!held && !texts_[index]) return static_cast<AVStream*>(nullptr);
+  if (!held && kind == AVMEDIA_TYPE_AUDIO && encodes_) sounds_[index] = FfmpegSoundEncoder::open(from, *out.oformat);
+  const AVCodecContext* encoder = texts_[index]    ? &texts_[index]->encoder()
+                                  : sounds_[index] ? &sounds_[index]->encoder()
+                                                   : nullptr;
+  if (!held && !encoder) return static_cast<AVStream*>(nullptr);
   AVStream* to = avformat_new_stream(&out, nullptr);
-  const int code = !to             ? AVERROR(ENOMEM)
-                   : texts_[index] ? avcodec_parameters_from_context(to->codecpar, &texts_[index]->encoder())
-                                   : avcodec_parameters_copy(to->codecpar, from.codecpar);
+  const int code = !to       ? AVERROR(ENOMEM)
+                   : encoder ? avcodec_parameters_from_context(to->codecpar, encoder)
+                             : avcodec_parameters_copy(to->codecpar, from.codecpar);
   if (code < 0) return Error{ErrorKind::io, "cannot be written: " + ffmpeg_error(code)};
   if (is_experiment(*out.oformat, to->codecpar->codec_id)) out.strict_std_compliance = FF_COMPLIANCE_EXPERIMENTAL;
   to->codecpar->codec_tag = 0;
-  to->time_base = from.time_base;
+  to->time_base = sounds_[index] ? encoder->time_base : from.time_base;
   to->disposition = from.disposition;
   av_dict_copy(&to->metadata, from.metadata, 0);
   return to;
@@ -204,38 +225,41 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
 Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagnostics& diagnostics) {
   AVFormatContext& out = output_.container();
   const bool sound_only = what == Copied::sound;
-  std::vector<std::string> left, pictures;
-  std::vector<const AVStream*> left_streams;
+  Named left, pictures, encoded;
+  std::string codec;
   const int worked_on = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   bool sound = false;
   target_.assign(input_->nb_streams, -1);
   texts_.resize(input_->nb_streams);
+  sounds_.resize(input_->nb_streams);
   for (unsigned i = 0; i < input_->nb_streams; ++i) {
     const AVStream& from = *input_->streams[i];
     const AVMediaType kind = from.codecpar->codec_type;
     sound = sound || kind == AVMEDIA_TYPE_AUDIO;
-    if (!sound_only && kind == AVMEDIA_TYPE_VIDEO && static_cast<int>(i) != worked_on)
-      pictures.push_back(stream_name(from, i));
+    if (!sound_only && kind == AVMEDIA_TYPE_VIDEO && static_cast<int>(i) != worked_on) pictures.add(from, i);
     if (kind == AVMEDIA_TYPE_VIDEO || (sound_only && kind != AVMEDIA_TYPE_AUDIO) ||
         (what == Copied::all_but_sound && kind == AVMEDIA_TYPE_AUDIO))
       continue;
     AFTERGLOW_TRY(const AVStream* to, add_stream(i));
-    if (to)
-      target_[i] = to->index;
-    else if (!is_told_elsewhere(from)) {
-      left.push_back(stream_name(from, i));
-      left_streams.push_back(&from);
-    }
+    if (!to && !is_told_elsewhere(from)) left.add(from, i);
+    if (!to) continue;
+    target_[i] = to->index;
+    if (!sounds_[i]) continue;
+    encoded.add(from, i);
+    codec = avcodec_get_name(to->codecpar->codec_id);
   }
   if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
   if (!sound_only) av_dict_copy(&out.metadata, input_->metadata, AV_DICT_DONT_OVERWRITE);
-  if (!pictures.empty())
+  if (!pictures.names.empty())
     diagnostics.warn(fmt::format("{}: of the pictures of {} one stream is worked on; {} {} left out", name,
-                                 file_.string(), join(pictures), pictures.size() == 1 ? "is" : "are"));
-  if (!left.empty())
-    diagnostics.warn(fmt::format("{}: {} of {} cannot be held by {} and {} left out{}", name, join(left),
-                                 file_.string(), out.oformat->name, left.size() == 1 ? "is" : "are",
-                                 who_takes(left_streams)));
+                                 file_.string(), join(pictures.names), pictures.one() ? "is" : "are"));
+  if (!encoded.names.empty())
+    diagnostics.warn(fmt::format("{}: {} encoded as {}, since {} does not take {}{}{}", name, encoded.of(file_), codec,
+                                 out.oformat->name, encoded.one() ? "it" : "them", encoded.takers(),
+                                 sound_only ? "" : "; --audio copy does not encode"));
+  if (!left.names.empty())
+    diagnostics.warn(fmt::format("{}: {} left out, since {} does not take {}{}", name, left.of(file_),
+                                 out.oformat->name, left.one() ? "it" : "them", left.takers()));
   return {};
 }
 
@@ -290,16 +314,48 @@ std::int64_t FfmpegCopy::begin_of(AVPacket& packet, std::int64_t stamp) const {
 
 Result<void> FfmpegCopy::put(AVPacket& packet) {
   const AVStream& from = *input_->streams[packet.stream_index];
-  const int target = target_[static_cast<std::size_t>(packet.stream_index)];
-  AVStream& to = *output_.container().streams[target];
+  const auto stream = static_cast<std::size_t>(packet.stream_index);
+  const AVStream& to = *output_.container().streams[target_[stream]];
   // In the finer of both clocks: that of MP3 in AVI, say, counts packets alone.
   const bool before = av_cmp_q(from.time_base, to.time_base) < 0;
   if (before) move(packet, -range_.shift, from.time_base);
   av_packet_rescale_ts(&packet, from.time_base, to.time_base);
   if (!before) move(packet, -range_.shift, to.time_base);
-  packet.stream_index = target;
+  return write(packet, stream);
+}
+
+/// Files of MP3 begin behind what their decoder needs first.
+void FfmpegCopy::cut_sound() {
+  const bool late = std::string_view(input_->iformat->name) == "mp3" && input_->start_time != AV_NOPTS_VALUE;
+  const std::int64_t by = late ? input_->start_time : 0;
+  for (const auto& sound : sounds_)
+    if (sound) sound->cut(range_.shift + by, range_.end);
+}
+
+/// By the clock of the output.
+Result<void> FfmpegCopy::write(AVPacket& packet, std::size_t stream) const {
+  AVFormatContext& out = output_.container();
+  const AVStream& to = *out.streams[target_[stream]];
+  const AVCodecParameters& codec = *to.codecpar;
+  if (const std::int64_t delay = missing_opus_delay(*out.oformat, codec); delay > 0)
+    move(packet, av_rescale_q(delay, {1, codec.sample_rate}, kMicroseconds), to.time_base);
+  packet.stream_index = to.index;
   packet.pos = -1;
   return output_.write(packet);
+}
+
+FfmpegSoundEncoder::Put FfmpegCopy::put_sound(std::size_t stream) const {
+  return [this, stream](AVPacket& packet) {
+    const AVStream& to = *output_.container().streams[target_[stream]];
+    av_packet_rescale_ts(&packet, sounds_[stream]->encoder().time_base, to.time_base);
+    return write(packet, stream);
+  };
+}
+
+Result<void> FfmpegCopy::finish() {
+  for (std::size_t i = 0; i < sounds_.size(); ++i)
+    if (sounds_[i]) AFTERGLOW_CHECK(sounds_[i]->finish(put_sound(i)));
+  return {};
 }
 
 /// Reads up to a packet that is held by the output, by the clock that runs on. False: the end.
@@ -331,9 +387,13 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
     const std::int64_t stamp = waiting_->dts != AV_NOPTS_VALUE ? waiting_->dts : waiting_->pts;
     if (stamp != AV_NOPTS_VALUE) {
       const std::int64_t time = begin_of(*waiting_, stamp);
-      if (time >= range_.begin && time < range_.end) {
+      const bool heard = sounds_[stream] != nullptr;  // its decoder needs what comes before the range, too
+      if ((time >= range_.begin || heard) && time < range_.end) {
         if (time - range_.shift >= until) return {};  // later
-        if (!texts_[stream] || texts_[stream]->convert(*waiting_)) AFTERGLOW_CHECK(put(*waiting_));
+        if (heard) {
+          AFTERGLOW_CHECK(sounds_[stream]->convert(*waiting_, put_sound(stream)));
+        } else if (!texts_[stream] || texts_[stream]->convert(*waiting_))
+          AFTERGLOW_CHECK(put(*waiting_));
       }
     }
     waiting_.reset();

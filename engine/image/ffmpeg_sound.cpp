@@ -72,7 +72,7 @@ class FfmpegSound : public SoundTrack {
       container.streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
     const AVStream& stream = *container.streams[stream_];
     const AVCodec* codec = avcodec_find_decoder(stream.codecpar->codec_id);
-    if (!codec || !is_among(*codec, kCodecs))
+    if (!codec || !is_sound_decoder(*codec))
       return Error{
           ErrorKind::io,
           std::string("has sound whose codec is not read (") + avcodec_get_name(stream.codecpar->codec_id) + ")",
@@ -292,6 +292,8 @@ class FfmpegSound : public SoundTrack {
 };
 
 }  // namespace
+
+bool is_sound_decoder(const AVCodec& codec) { return is_among(codec, kCodecs); }
 
 Result<std::unique_ptr<SoundTrack>> open_sound_with_ffmpeg(const MovieRequest& request, double start,
                                                            const std::vector<ClockPart>& clock) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+extern "C" {
+#include <libavcodec/codec.h>
+}
+
 #include <memory>
 #include <vector>
 
@@ -9,6 +13,9 @@
 #include "image/sound.h"
 
 namespace afterglow {
+
+/// One that strangers' files may reach.
+bool is_sound_decoder(const AVCodec& codec);
 
 /// See SoundTrack::open. `start`: when the first picture shows, in seconds of the container's clock. `clock`:
 /// where that one starts anew.

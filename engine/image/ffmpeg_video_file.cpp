@@ -54,7 +54,8 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   if (from.empty()) return {};
   const CopyRange& range = sound_only ? plan_.audio_range : plan_.range;
   const Copied what = sound_only ? Copied::sound : plan_.silent ? Copied::all_but_sound : Copied::all;
-  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, what, *output_, range, plan_.patience, name, diagnostics));
+  AFTERGLOW_TRY(copy_,
+                FfmpegCopy::open(from, what, !plan_.copies_only, *output_, range, plan_.patience, name, diagnostics));
   if (!sound_only) copy_->describe_pictures(*stream_);
   return {};
 }
@@ -111,6 +112,7 @@ void FfmpegVideoFile::say_last_length(std::int64_t ticks) {
 Result<void> FfmpegVideoFile::finish(bool whole, std::int64_t end) {
   const std::int64_t until = av_rescale_q(end, rational(plan_.time_base), kMicroseconds);
   if (copy_) AFTERGLOW_CHECK(copy_->copy(whole ? std::numeric_limits<std::int64_t>::max() : until));
+  if (copy_) AFTERGLOW_CHECK(copy_->finish());
   say_last_length(end - last_);
   return output_->finish();
 }

@@ -247,6 +247,10 @@ void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPl
   plan.pack.luma = tags.luma;
 }
 
+bool is_audio_file(const std::filesystem::path& audio) {
+  return !audio.empty() && audio != kNoAudio && audio != kCopiedAudio;
+}
+
 const OutputSpace* video_space(const WriteOptions& options, const PixelLayout& layout, bool view) {
   return options.space ? options.space : find_output_space(layout.rgb_colors() || view ? "srgb" : "rec709").value();
 }
@@ -276,7 +280,8 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   describe_space(*plan.pack.space, *plan.pack.layout, plan);
   plan.pack.dither = options.dither.value_or(codec->exact && plan.pack.layout->bits == 8);
   plan.silent = options.video.audio == kNoAudio;
-  if (!options.video.piece && !plan.silent) plan.audio = options.video.audio;
+  plan.copies_only = options.video.audio == kCopiedAudio;
+  if (!options.video.piece && is_audio_file(options.video.audio)) plan.audio = options.video.audio;
   return plan;
 }
 

@@ -37,6 +37,10 @@ struct CopyRange {
 
 /// In place of a file in VideoOptions::audio: no sound, nor that of the source.
 inline constexpr const char* kNoAudio = "none";
+/// That of the source, where the container takes it as it is.
+inline constexpr const char* kCopiedAudio = "copy";
+/// Whether VideoOptions::audio is a file.
+bool is_audio_file(const std::filesystem::path& audio);
 
 /// Everything that a module needs to write one.
 struct VideoPlan {
@@ -55,6 +59,7 @@ struct VideoPlan {
   Rational time_base{1, 24};     ///< seconds of a time stamp's unit
   std::filesystem::path audio;   ///< sound from here: --audio
   bool silent = false;           ///< kNoAudio
+  bool copies_only = false;      ///< kCopiedAudio
   CopyRange range;               ///< of the source
   CopyRange audio_range;         ///< of the other file, whose time is that since the source's first frame
   std::filesystem::path source;  ///< the video that is worked on: its other streams are copied; empty: none

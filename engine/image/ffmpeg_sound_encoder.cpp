@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_sound_encoder.h"
+
+extern "C" {
+#include <libavutil/channel_layout.h>
+#include <libavutil/mathematics.h>
+#include <libavutil/samplefmt.h>
+}
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "image/ffmpeg_clock.h"
+#include "image/ffmpeg_log.h"
+#include "image/ffmpeg_sound.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kBitsASecond = 96'000;  // of each channel
+constexpr int kEncodedRate = 48'000;
+/// Samples at a time, where the encoder takes any number.
+constexpr int kSoundPiece = 1024;
+/// Stamps of some containers are round (AVI: a packet of MP3): below this part of a second a difference is none.
+constexpr int kRoundStamp = 40;
+/// Seconds. A hole that is longer is a broken stamp.
+constexpr std::int64_t kLongestHole = 3600;
+
+Error encoding_failed(int code) { return {ErrorKind::io, "sound cannot be encoded: " + ffmpeg_error(code)}; }
+Error no_sound_memory() { return {ErrorKind::io, "there is no memory to encode its sound"}; }
+
+struct Target {
+  const char* encoder = nullptr;  ///< FFmpeg's name; null: none
+  AVSampleFormat format = AV_SAMPLE_FMT_NONE;
+  bool any_rate = false;
+};
+
+/// Whether 16 bits hold all that the stream says.
+bool fits_in_16_bits(const AVCodecParameters& sound) {
+  const int raw = sound.bits_per_raw_sample, coded = sound.bits_per_coded_sample;
+  return raw > 0 ? raw <= 16 : coded > 0 && coded <= 16 && av_get_exact_bits_per_sample(sound.codec_id) > 0;
+}
+
+/// Players know AAC in MP4, and Opus in WebM; what editors take loses nothing.
+Target target_for(const AVOutputFormat& format, const AVCodecParameters& sound) {
+  const std::string_view name = format.name;
+  if (name == "mp4") return {"aac", AV_SAMPLE_FMT_FLTP};
+  if (name == "webm") return {"libopus", AV_SAMPLE_FMT_FLT};
+  if (name != "mov" && name != "matroska") return {};
+  if (fits_in_16_bits(sound)) return {"pcm_s16le", AV_SAMPLE_FMT_S16, true};
+  return {"pcm_s24le", AV_SAMPLE_FMT_S32, true};
+}
+
+int rate_for(const Target& target, int rate) {
+  constexpr std::array kOfAac{96000, 88200, 64000, 48000, 44100, 32000, 24000, 22050, 16000, 12000, 11025, 8000};
+  const bool kept =
+      target.any_rate || (std::string_view(target.encoder) == "aac" && std::ranges::find(kOfAac, rate) != kOfAac.end());
+  return kept ? rate : kEncodedRate;
+}
+
+/// The usual one for so many channels, where the file says none.
+int known_layout(AVChannelLayout& to, const AVChannelLayout& from) {
+  if (from.order != AV_CHANNEL_ORDER_UNSPEC) return av_channel_layout_copy(&to, &from);
+  av_channel_layout_default(&to, from.nb_channels);
+  return 0;
+}
+
+CodecHandle open_sound_decoder(const AVStream& from) {
+  const AVCodec* codec = avcodec_find_decoder(from.codecpar->codec_id);
+  if (!codec || !is_sound_decoder(*codec)) return nullptr;
+  CodecHandle decoder(avcodec_alloc_context3(codec));
+  if (!decoder || avcodec_parameters_to_context(decoder.get(), from.codecpar) < 0) return nullptr;
+  decoder->pkt_timebase = from.time_base;
+  return avcodec_open2(decoder.get(), codec, nullptr) < 0 ? nullptr : std::move(decoder);
+}
+
+/// `usual`: with the usual layout of so many channels, in place of one that the codec may not have.
+CodecHandle open_sound_encoder(const AVCodecParameters& from, const AVOutputFormat& format, bool usual) {
+  const Target target = target_for(format, from);
+  const AVCodec* codec = target.encoder ? avcodec_find_encoder_by_name(target.encoder) : nullptr;
+  CodecHandle encoder(codec ? avcodec_alloc_context3(codec) : nullptr);
+  const int channels = from.ch_layout.nb_channels;
+  if (!encoder || from.sample_rate < 1 || channels < 1) return nullptr;
+  encoder->sample_fmt = target.format;
+  encoder->sample_rate = rate_for(target, from.sample_rate);
+  encoder->time_base = {1, encoder->sample_rate};
+  if (usual) av_channel_layout_default(&encoder->ch_layout, channels);
+  if (!usual && known_layout(encoder->ch_layout, from.ch_layout) < 0) return nullptr;
+  if (!target.any_rate) encoder->bit_rate = std::int64_t{kBitsASecond} * channels;
+  encoder->flags |= AV_CODEC_FLAG_BITEXACT;
+  if ((format.flags & AVFMT_GLOBALHEADER) != 0) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  const int code = avcodec_open2(encoder.get(), codec, nullptr);
+  static_cast<void>(ffmpeg_said());
+  return code < 0 ? nullptr : std::move(encoder);
+}
+
+/// From this sample on.
+std::array<void*, AV_NUM_DATA_POINTERS> planes_from(const AVFrame& samples, std::int64_t first) {
+  const auto format = static_cast<AVSampleFormat>(samples.format);
+  const bool planar = av_sample_fmt_is_planar(format) != 0;
+  const std::int64_t stride =
+      std::int64_t{av_get_bytes_per_sample(format)} * (planar ? 1 : samples.ch_layout.nb_channels);
+  std::array<void*, AV_NUM_DATA_POINTERS> planes{};
+  for (std::size_t i = 0; i < planes.size() && samples.data[i]; ++i) planes[i] = samples.data[i] + first * stride;
+  return planes;
+}
+
+}  // namespace
+
+std::unique_ptr<FfmpegSoundEncoder> FfmpegSoundEncoder::open(const AVStream& from, const AVOutputFormat& format) {
+  std::unique_ptr<FfmpegSoundEncoder> out(new FfmpegSoundEncoder());
+  // Planes beyond those that a frame itself has room for are not looked after here.
+  if (from.codecpar->ch_layout.nb_channels > AV_NUM_DATA_POINTERS) return nullptr;
+  out->encoder_ = open_sound_encoder(*from.codecpar, format, false);
+  if (!out->encoder_) out->encoder_ = open_sound_encoder(*from.codecpar, format, true);
+  if (!out->encoder_) return nullptr;
+  out->decoder_ = open_sound_decoder(from);
+  out->frame_.reset(av_frame_alloc());
+  const AVCodecContext& encoder = *out->encoder_;
+  out->waiting_.reset(av_audio_fifo_alloc(encoder.sample_fmt, encoder.ch_layout.nb_channels, encoder.sample_rate));
+  return out->decoder_ && out->frame_ && out->waiting_ ? std::move(out) : nullptr;
+}
+
+void FfmpegSoundEncoder::cut(std::int64_t begin, std::int64_t end) {
+  begin_ = begin;
+  if (end != INT64_MAX) end_ = std::max<std::int64_t>(0, av_rescale_q(end - begin, kMicroseconds, encoder_->time_base));
+}
+
+Result<void> FfmpegSoundEncoder::convert(const AVPacket& packet, const Put& put) {
+  AFTERGLOW_CHECK(decode(&packet));
+  return encode(encoder_->frame_size > 0 ? encoder_->frame_size : kSoundPiece, put);
+}
+
+Result<void> FfmpegSoundEncoder::finish(const Put& put) {
+  AFTERGLOW_CHECK(decode(nullptr));
+  if (converter_) AFTERGLOW_CHECK(convert_samples(nullptr));
+  AFTERGLOW_CHECK(encode(1, put));
+  if (const int code = avcodec_send_frame(encoder_.get(), nullptr); code < 0) return encoding_failed(code);
+  return drain(put);
+}
+
+/// Null: the end.
+Result<void> FfmpegSoundEncoder::decode(const AVPacket* packet) {
+  avcodec_send_packet(decoder_.get(), packet);  // what it cannot take is silent
+  while (avcodec_receive_frame(decoder_.get(), frame_.get()) == 0) {
+    auto taken = take(*frame_);
+    av_frame_unref(frame_.get());
+    AFTERGLOW_CHECK(std::move(taken));
+  }
+  static_cast<void>(ffmpeg_said());
+  return {};
+}
+
+bool FfmpegSoundEncoder::fits(const AVFrame& frame) {
+  const bool same =
+      converter_ && frame.sample_rate == rate_ && frame.format == format_ && frame.ch_layout.nb_channels == channels_;
+  if (same) return true;
+  AVChannelLayout given{};
+  if (known_layout(given, frame.ch_layout) < 0) return false;
+  SwrContext* made = nullptr;
+  const int set = swr_alloc_set_opts2(&made, &encoder_->ch_layout, encoder_->sample_fmt, encoder_->sample_rate, &given,
+                                      static_cast<AVSampleFormat>(frame.format), frame.sample_rate, 0, nullptr);
+  av_channel_layout_uninit(&given);
+  converter_.reset(made);
+  if (set < 0 || swr_init(made) < 0) {
+    converter_.reset();
+    return false;
+  }
+  rate_ = frame.sample_rate;
+  format_ = frame.format;
+  channels_ = frame.ch_layout.nb_channels;
+  return true;
+}
+
+Result<void> FfmpegSoundEncoder::take(const AVFrame& frame) {
+  if (frame.sample_rate < 1 || !fits(frame)) return {};
+  AFTERGLOW_CHECK(place(frame));
+  return convert_samples(&frame);
+}
+
+/// Where the frame's samples belong: behind those before, or where its stamp says when that is elsewhere.
+Result<void> FfmpegSoundEncoder::place(const AVFrame& frame) {
+  if (frame.best_effort_timestamp == AV_NOPTS_VALUE) return {};
+  const std::int64_t rate = encoder_->sample_rate;
+  const std::int64_t at = av_rescale_q(frame.best_effort_timestamp, decoder_->pkt_timebase, encoder_->time_base) -
+                          av_rescale_q(begin_, kMicroseconds, encoder_->time_base);
+  const std::int64_t late = at - next_ - swr_get_delay(converter_.get(), rate);
+  if (!std::exchange(anchored_, true)) {
+    if (late > 0) return late < kLongestHole * rate ? be_silent(late) : Result<void>();
+    next_ += late;  // what comes before the output's beginning is left out
+  } else if (late > rate / kRoundStamp && late < kLongestHole * rate) {
+    return be_silent(late);
+  } else if (late < -rate / kRoundStamp) {
+    doubled_ = -late;
+  }
+  return {};
+}
+
+FrameHandle FfmpegSoundEncoder::room_for(std::int64_t count) const {
+  FrameHandle samples(av_frame_alloc());
+  if (!samples) return nullptr;
+  samples->format = encoder_->sample_fmt;
+  samples->sample_rate = encoder_->sample_rate;
+  samples->nb_samples = static_cast<int>(count);
+  const bool made = av_channel_layout_copy(&samples->ch_layout, &encoder_->ch_layout) >= 0 &&
+                    av_frame_get_buffer(samples.get(), 0) >= 0;
+  return made ? std::move(samples) : nullptr;
+}
+
+/// Null: what the converter still holds.
+Result<void> FfmpegSoundEncoder::convert_samples(const AVFrame* frame) {
+  const int room = swr_get_out_samples(converter_.get(), frame ? frame->nb_samples : 0);
+  if (room <= 0) return {};
+  const FrameHandle samples = room_for(room);
+  if (!samples) return no_sound_memory();
+  const auto** from = frame ? const_cast<const std::uint8_t**>(frame->extended_data) : nullptr;
+  const int made = swr_convert(converter_.get(), samples->data, room, from, frame ? frame->nb_samples : 0);
+  return add(*samples, std::max(made, 0));
+}
+
+Result<void> FfmpegSoundEncoder::be_silent(std::int64_t count) {
+  while (count > 0) {
+    const std::int64_t some = std::min<std::int64_t>(count, encoder_->sample_rate);
+    const FrameHandle samples = room_for(some);
+    if (!samples) return no_sound_memory();
+    av_samples_set_silence(samples->data, 0, samples->nb_samples, samples->ch_layout.nb_channels, encoder_->sample_fmt);
+    AFTERGLOW_CHECK(add(*samples, some));
+    count -= some;
+  }
+  return {};
+}
+
+/// Those of them that are heard.
+Result<void> FfmpegSoundEncoder::add(const AVFrame& samples, std::int64_t count) {
+  const std::int64_t doubled = std::min(doubled_, count);
+  doubled_ -= doubled;
+  const std::int64_t first = std::min(count, doubled + std::max<std::int64_t>(0, -next_)),
+                     last = std::min(count, doubled + std::max<std::int64_t>(0, end_ - next_));
+  next_ += count - doubled;
+  if (first >= last) return {};
+  const auto planes = planes_from(samples, first);
+  const int some = static_cast<int>(last - first);
+  return av_audio_fifo_write(waiting_.get(), const_cast<void**>(planes.data()), some) == some ? Result<void>()
+                                                                                              : no_sound_memory();
+}
+
+/// As long as so many samples wait.
+Result<void> FfmpegSoundEncoder::encode(std::int64_t least, const Put& put) {
+  const int most = encoder_->frame_size > 0 ? encoder_->frame_size : kSoundPiece;
+  while (av_audio_fifo_size(waiting_.get()) >= least) {
+    const int count = std::min(most, av_audio_fifo_size(waiting_.get()));
+    const FrameHandle samples = room_for(count);
+    if (!samples) return no_sound_memory();
+    auto planes = planes_from(*samples, 0);
+    if (av_audio_fifo_read(waiting_.get(), planes.data(), count) != count) return no_sound_memory();
+    samples->pts = std::exchange(made_, made_ + count);
+    if (const int code = avcodec_send_frame(encoder_.get(), samples.get()); code < 0) return encoding_failed(code);
+    AFTERGLOW_CHECK(drain(put));
+  }
+  return {};
+}
+
+Result<void> FfmpegSoundEncoder::drain(const Put& put) const {
+  while (true) {
+    const PacketHandle packet(av_packet_alloc());
+    if (!packet) return no_sound_memory();
+    const int code = avcodec_receive_packet(encoder_.get(), packet.get());
+    if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return {};
+    if (code < 0) return encoding_failed(code);
+    AFTERGLOW_CHECK(put(*packet));
+  }
+}
+
+}  // namespace afterglow
