@@ -194,6 +194,8 @@ Result<void> run_frames(BatchRun& run) {
   if (!options.read.keep_negative) options.read.keep_negative = run.session->preset().keeps_negative();
   AFTERGLOW_CHECK(prepare_lock(run));
   FrameLoop loop(*run.session, *run.sink, options, run.events);
+  if (run.first && frames.size() > 1)
+    if (auto good = loop.check_region(*run.first); !good) return named(std::move(good).error(), frames.front().job);
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));
   if (earlier) loop.follow_histories();
   if (earlier && takes_notes(run)) note_earlier_files(frames, asked.files, *earlier);

@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "batch/crop.h"
+#include "core/file.h"
 #include "core/file_time.h"
 #include "core/release_memory.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
 #include "image/scale.h"
+#include "image/sequence.h"
 
 namespace afterglow {
 namespace {
@@ -50,6 +52,8 @@ FrameLoop::~FrameLoop() = default;
 
 Result<void> FrameLoop::run(Schedule& schedule) {
   const auto& frames = schedule.frames;
+  schedule_ = &schedule;
+  full_ = false;
   done_ = failed_ = 0;
   non_finite_ = {};
   replaced_.clear();
@@ -129,6 +133,7 @@ Result<void> FrameLoop::close(Result<void> result) {
   auto last = finish_writing(0);
   if (last) last = finish_sink(result);
   events_.end_progress();
+  if (full_) return full();
   if (!result) {
     if (result.error().kind == ErrorKind::interrupted && total_ > 1) {
       Error error = result.error();
@@ -166,6 +171,18 @@ bool FrameLoop::begins_shot(const Reading& reading) const {
 void FrameLoop::begin_shot() {
   last_.reset();
   gaps_.clear();
+}
+
+/// What there was no room for.
+Error FrameLoop::full() const {
+  std::vector<int> left;
+  for (const ScheduledFrame& one : schedule_->frames)
+    if (!one.pre_roll && one.record->state != FrameRecord::State::done) left.push_back(one.record->job.frame);
+  std::ranges::sort(left);
+  const bool numbers = std::ranges::adjacent_find(left) == left.end();
+  return {ErrorKind::io, fmt::format("the disk is full: {} of {} frames were made{}{}", done_, total_,
+                                     numbers && !left.empty() ? "; not made: " + frames_text(left) : "",
+                                     endless_ ? "" : "; --resume goes on from there")};
 }
 
 /// Which frame this one follows: the last of its sequence that was made. It was evaluated as if none failed.
@@ -413,15 +430,22 @@ Result<void> FrameLoop::finish_writing(std::size_t left) {
     auto [frame, written] = *writing_.take();
     release_memory(frame->job.made_of);  // noted, and sequences are long
     if (!written && sink_.is_one()) return written;
+    if (!written && full_ && is_disk_full(written.error())) {  // told already
+      frame->state = FrameRecord::State::failed;
+      frame->error = written.error();
+      continue;
+    }
     if (!written) {
-      AFTERGLOW_CHECK(fail(*frame, std::move(written).error()));
+      const Error error = written.error();
+      AFTERGLOW_CHECK(fail(*frame, error));
+      if (is_disk_full(error)) full_ = true;
       continue;
     }
     frame->state = FrameRecord::State::done;
     if (frame->job.passing) frame->job.movie.reset();
     ++done_;
   }
-  return {};
+  return full_ ? full() : Result<void>();
 }
 
 /// Notes the failure; returns it when the run ends with it.

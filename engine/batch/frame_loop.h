@@ -41,6 +41,8 @@ class FrameLoop {
   Result<std::shared_ptr<const Build>> inspect(const FrameJob& job);
   /// See FramePlanner.
   Size size_of(const PictureHeader& header) const { return planner_.size_of(header); }
+  /// See FramePlanner: what the first picture refuses, all others would.
+  Result<void> check_region(const PictureHeader& header) const { return planner_.check_region(header); }
   /// Pictures depend on the frames before them: see FrameLoopOptions.
   void follow_histories() { options_.histories = true; }
   /// Each frame gets its FrameJob::made_of. `notes` outlives the loop.
@@ -78,6 +80,7 @@ class FrameLoop {
   Result<void> finish_sink(const Result<void>& result);
   Result<void> fail(FrameRecord& frame, Error error, bool pre_roll = false);
   Result<void> close(Result<void> result);
+  Error full() const;
 
   Session& session_;
   FrameSink& sink_;
@@ -91,8 +94,10 @@ class FrameLoop {
   WriteQueue writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
-  std::size_t places_ = 0;  ///< of frames that are written, with those of missing ones
-  bool endless_ = false;    ///< nobody knows how many frames will come
+  std::size_t places_ = 0;              ///< of frames that are written, with those of missing ones
+  const Schedule* schedule_ = nullptr;  ///< that runs
+  bool full_ = false;                   ///< the disk: no frame is begun any more
+  bool endless_ = false;                ///< nobody knows how many frames will come
   std::optional<Error> stream_error_;
   Overlap overlap_;
   std::map<std::string, int> replaced_;  ///< histories that began anew within a sequence, and in how many frames

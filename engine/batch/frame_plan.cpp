@@ -106,6 +106,13 @@ FramePlanner::Shape FramePlanner::shape_of(const PictureHeader& header) const {
   return shape;
 }
 
+Result<void> FramePlanner::check_region(const PictureHeader& header) const {
+  if (!options_.region) return {};
+  const Shape shape = shape_of(header);
+  const auto part = part_of_region(*options_.region, shape.data, shape.display);
+  return part ? Result<void>() : part.error();
+}
+
 BuildContext FramePlanner::context_of(const FrameJob& job, const PictureHeader& header) const {
   BuildContext context;
   const Shape shape = shape_of(header);

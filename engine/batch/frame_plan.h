@@ -75,6 +75,8 @@ class FramePlanner {
   /// Errors: io (above --max-memory).
   Result<FrameNeed> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::uint64_t largest_need() const { return largest_need_; }
+  /// Whether the region that is asked for lies in a picture with this header. Errors: io.
+  Result<void> check_region(const PictureHeader& header) const;
   /// In which the look runs on a picture with this header.
   Size size_of(const PictureHeader& header) const { return shape_of(header).size(); }
 

@@ -96,7 +96,9 @@ Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, con
         watched[i].record->state = kept[i];
       }
     }
-    if (!done && (fail_fast || done.error().kind != ErrorKind::io)) return done;
+    const bool full = std::ranges::any_of(
+        batch, [](const Watched* one) { return one->record->error && is_disk_full(*one->record->error); });
+    if (!done && (fail_fast || full || done.error().kind != ErrorKind::io)) return done;
     for (Watched* one : batch) {
       one->due = false;
       one->made = one->now;

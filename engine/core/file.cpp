@@ -158,6 +158,11 @@ Result<std::string> read_named_file(const fs::path& path, std::size_t limit, Fil
   return content;
 }
 
+bool is_disk_full(const Error& error) {
+  const auto says = [&](int reason) { return error.message.find(std::strerror(reason)) != std::string::npos; };
+  return error.kind == ErrorKind::io && (says(ENOSPC) || says(EDQUOT));
+}
+
 Result<void> write_file_atomically(const fs::path& path, std::string_view content) {
   if (is_stream(path)) return write_stream(path, content);
   Temporary temporary(path);

@@ -35,6 +35,9 @@ std::vector<std::string> names_in(const std::filesystem::path& folder);
 /// frame of a sequence (its name holds a number of several digits) none is: it is missing, not misspelt.
 Error missing_file(const std::filesystem::path& path);
 
+/// Whether it says that there is no room left to write: a full disk, a quota that is used up.
+bool is_disk_full(const Error& error);
+
 /// Is there a file (links are followed)?
 bool is_file(const std::filesystem::path& path, FileRecord* record = nullptr);
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "sequence_test.h"
+#include "small_disk.h"
 
 namespace afterglow::test {
 namespace {
@@ -201,6 +202,31 @@ TEST_F(Sequence, LooksAreAskedInTheSizeOfThePictures) {
   EXPECT_EQ(run_all({"--size", "50%"}).exit_code, kDone) << run_all({"--size", "50%"}).err;
   write("in/shot.0001.exr", "broken");
   EXPECT_THAT(run_all().err, Not(HasSubstr("asked for")));
+}
+
+/// What is left would be computed for nothing.
+TEST_F(Sequence, AFullDiskEndsTheRun) {
+  for (int frame = 10; frame <= 60; ++frame) make_exr(fmt::format("in/shot.{:04}.exr", frame));
+  const SmallDisk disk(path("out"), "64k");
+  if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+  const std::vector<std::string> options{"--png-level", "0", "--frames", "10-60", "--report", "report.json"};
+  const Outcome outcome = run_all(options);
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  const auto all = states("report.json");
+  const auto made = std::ranges::count(all, "done"), left = std::ranges::count(all, "not run");
+  EXPECT_GT(made, 0);
+  EXPECT_GT(left, 30) << "the rest is not begun";
+  EXPECT_EQ(outputs().size(), static_cast<std::size_t>(made)) << "whole or absent";
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 2) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(".png: error: cannot be written: No space left on device\n"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr(fmt::format("\nerror: the disk is full: {} of 51 frames were made; not made: ", made)));
+  EXPECT_THAT(outcome.err, HasSubstr("-60; --resume goes on from there\n"));
+  ASSERT_TRUE(disk.resize("4m"));
+  std::vector<std::string> again = options;
+  again.emplace_back("--resume");
+  EXPECT_EQ(run_all(again).exit_code, kDone);
+  EXPECT_EQ(outputs().size(), 51u);
 }
 
 }  // namespace

@@ -81,6 +81,12 @@ TEST_F(Skip, RegionsThatCannotBe) {
     EXPECT_TRUE(is_one_error_line(outcome.err)) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("reaches beyond the picture, which has 64×36 pixels"));
   }
+  for (const char* name : {"in/a.0001.exr", "in/a.0002.exr", "in/a.0003.exr"}) make_exr(name, 64, 36);
+  const Outcome several = run({"run", "look.lua", "in/a.####.exr", "-o", "o.####.png", "--region", "60,0,5,5"});
+  EXPECT_EQ(several.exit_code, kFiles);
+  EXPECT_EQ(several.err,
+            "in/a.0001.exr: error: the region 60,0,5,5 reaches beyond the picture, which has 64×36 pixels\n");
+  fs::remove_all(path("in"));
   const Outcome layers = run({"run", "look.lua", "a.exr", "-o", "o.exr", "--region", "0,0,5,5", "--keep-layers"});
   EXPECT_EQ(layers.exit_code, kUsage);
   EXPECT_THAT(layers.err, HasSubstr("cannot go with --region"));
