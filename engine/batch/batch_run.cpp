@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "batch/movie_times.h"
 #include "batch/resume.h"
 #include "batch/schedule.h"
 #include "batch/watch_run.h"
@@ -260,27 +261,14 @@ bool take_fps(BatchRequest& request, const std::vector<FrameJob>& frames) {
 
 namespace {
 
-/// --fps, of a video that becomes a video.
-void tell_of_own_times(const BatchRequest& request, const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
-  if (request.loop.takes_fps || !is_video_output(request.files.output) || frames.empty()) return;
-  const FrameJob& first = frames.front();
-  if (!first.movie || first.passing || first.movie->facts().rate.numerator <= 0) return;
-  constexpr double kSame = 1e-3;
-  const Rational& rate = first.movie->facts().rate;
-  const double own = static_cast<double>(rate.numerator) / rate.denominator;
-  if (std::abs(request.loop.fps - own) <= kSame * own) return;
-  diagnostics.warn(
-      fmt::format("{}: frames of a video keep their own times ({} a second); {} a second is what looks see",
-                  first.movie->file().string(), number_text(own), number_text(request.loop.fps)));
-}
-
 Result<void> run_named(const BatchRequest& asked, const RunEvents& events, RunReport& report) {
   BatchRequest request = asked;
   BatchRun run{request, events, report};
   AFTERGLOW_CHECK(check_written(request, {}, {}));  // a report of frames that cannot be listed is written, too
   report.replaces_nothing = true;
   AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
-  tell_of_own_times(request, run.list.jobs, events.diagnostics);
+  if (!request.loop.takes_fps) tell_of_own_times(request.loop.fps, run.list.jobs, events.diagnostics);
+  tell_of_lost_times(request.files.output, run.list.jobs, events.diagnostics);
   if (take_fps(request, run.list.jobs))
     events.note(fmt::format("{}: {} frames a second, as the first picture says", request.files.output,
                             number_text(request.loop.fps)));

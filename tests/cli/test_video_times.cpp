@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Times of a video's frames: what is told where they cannot be kept, or not be changed.
+#include "video_out_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class VideoTimes : public VideoOut {
+ protected:
+  void SetUp() override {
+    VideoOut::SetUp();
+    make_frames(24);
+    ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -c:v ffv1 even.mkv").exit_code, 0);
+  }
+  /// What is said when it becomes this.
+  std::string said(const std::string& from, const std::string& to, const std::string& more = "") const {
+    const Outcome outcome = shell("\"$AFTERGLOW\" run look.lua " + from + " -o " + to + " " + more);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err;
+  }
+};
+
+TEST_F(VideoTimes, ARateForAVideoIsTold) {
+  const std::string own =
+      "warning: even.mkv: frames of a video keep their own times (24 a second); --fps is for pictures\n";
+  for (const std::string to : {"out.mkv", "out.####.png", "- >out.y4m"}) {
+    EXPECT_EQ(said("even.mkv", to, "--fps 12"), own) << to;
+    EXPECT_EQ(said("even.mkv", to, "--fps 24"), "") << to;
+  }
+  EXPECT_THAT(said("-", "out.####.png", "--fps 12 <out.y4m"), HasSubstr("keep their own times (24 a second)"));
+  EXPECT_EQ(said("in/####.ppm", "out.mkv", "--fps 12"), "");
+  EXPECT_EQ(stream_of("out.mkv").at("avg_frame_rate"), "12/1");
+}
+
+/// Pictures and streams have no times.
+TEST_F(VideoTimes, ThoseThatAreLostAreTold) {
+  ASSERT_EQ(shell("ffmpeg -v error -i even.mkv -vf \"select=not(between(n\\,7\\,9))\" -fps_mode passthrough -c:v ffv1 "
+                  "hole.mkv")
+                .exit_code,
+            0);
+  for (const auto& [to, word] : {std::pair("out.####.png", "pictures"), {"- >out.y4m", "a stream"}}) {
+    EXPECT_EQ(said("hole.mkv", to), std::string("warning: hole.mkv: its frames come at no even rate, which ") + word +
+                                        " cannot say; .mp4, .mov and .mkv keep the times, and ffmpeg -fps_mode cfr "
+                                        "makes the rate even before\n");
+    EXPECT_EQ(said("even.mkv", to), "");
+  }
+  EXPECT_EQ(said("hole.mkv", "part.####.png", "--frames 10-20"), "") << "these are even";
+  EXPECT_EQ(said("hole.mkv", "out.mkv"), "");
+}
+
+}  // namespace
+}  // namespace afterglow::test
