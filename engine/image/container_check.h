@@ -26,6 +26,7 @@ struct ContainerFacts {
   double exposure = 1;                      ///< Radiance: what the light was multiplied by
   std::optional<int> orientation;           ///< Radiance, WebP, PNG: as Exif has it, where the library may not find it
   bool srgb = false;                        ///< PNG sRGB chunk
+  bool adobe_rgb = false;                   ///< EXIF of a JPEG says so
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
   std::optional<Chromaticities> primaries;  ///< PNG cHRM
   /// PNG cICP, nclx of HEIF and AVIF: numbers of ITU-T H.273.

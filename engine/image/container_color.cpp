@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "image/icc_profile.h"
+#include "image/input_space.h"
 #include "image/movie_color.h"
 
 namespace afterglow {
@@ -66,6 +67,10 @@ bool use_container_color(const ContainerFacts& container, std::span<const std::u
   const bool whole = png && codes && codes->primaries != kUnsaid && codes->transfer != kUnsaid;
   if (whole && use_numbers(*codes, name, encoding, diagnostics)) return true;  // before iCCP, as PNG has it
   if (use_profile(profile, name, encoding, diagnostics)) return true;
+  if (container.adobe_rgb) {
+    use_input_space(**find_input_space("adobe_rgb"), encoding);
+    return true;
+  }
   if (png) use_png_chunks(container, name, encoding, diagnostics);
   if (codes && !whole) use_numbers(*codes, name, encoding, diagnostics);  // what they say
   return png || codes.has_value();

@@ -14,6 +14,7 @@ namespace {
 constexpr std::array<double, 2> kD65{0.3127, 0.3290};
 constexpr Chromaticities kAp0{{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, {0.32168, 0.33767}};
 constexpr Chromaticities kP3{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
+constexpr Chromaticities kAdobeRgb{{0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65};
 constexpr Chromaticities kAp1{{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 constexpr Chromaticities kWideGamut3{{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
 constexpr Chromaticities kWideGamut4{{0.7347, 0.2653}, {0.1424, 0.8576}, {0.0991, -0.0308}, kD65};
@@ -78,13 +79,17 @@ double from_rec709(double v) {
 double mirrored_power(double v, double exponent) { return std::copysign(std::pow(std::abs(v), exponent), v); }
 double from_gamma22(double v) { return mirrored_power(v, 2.2); }
 double from_gamma24(double v) { return mirrored_power(v, 2.4); }
+// Adobe RGB (1998) Color Image Encoding, 2005-05: 2 + 51/256.
+double from_adobe_rgb(double v) { return mirrored_power(v, 563.0 / 256); }
 double as_it_is(double v) { return v; }
 
 constexpr std::array kSpaces{
     InputSpace{"aces2065_1", "linear ACES2065-1 (SMPTE ST 2065-1), primaries AP0", as_it_is, kAp0},
     InputSpace{"acescct", "ACEScct (AMPAS S-2016-001), primaries AP1", from_acescct, kAp1},
     InputSpace{"acescg", "linear ACEScg (AMPAS S-2014-004), primaries AP1", as_it_is, kAp1},
+    InputSpace{"adobe_rgb", "Adobe RGB (1998)", from_adobe_rgb, kAdobeRgb, true},
     InputSpace{"cineon", "Cineon printing density (black 95, white 685 of 1023), Rec.709", from_cineon, kRec709},
+    InputSpace{"display_p3", "Display P3: the curve of sRGB, P3 with the white of D65", srgb_to_linear, kP3, true},
     InputSpace{"gamma22", "power 2.2, Rec.709", from_gamma22, kRec709, true},
     InputSpace{"gamma24", "power 2.4, Rec.709", from_gamma24, kRec709, true},
     InputSpace{"hlg", "HLG (ITU-R BT.2100), Rec.2020; the signal 0.75 is 1", from_hlg, kRec2020},

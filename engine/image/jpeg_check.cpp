@@ -26,8 +26,11 @@ class JpegMetadata {
     constexpr std::string_view kExifName = "Exif", kProfile = "ICC_PROFILE", kXmp = "http://ns.adobe.com/xap/1.0/",
                                kPhotoshop = "Photoshop 3.0";
     constexpr std::size_t kProfileHead = 14;
-    if (marker == 0xe1 && begins(kExifName))
-      return exif_fault(segment.subspan(std::min<std::size_t>(segment.size(), 6)));
+    if (marker == 0xe1 && begins(kExifName)) {
+      const Bytes exif = segment.subspan(std::min<std::size_t>(segment.size(), 6));
+      adobe_rgb_ = adobe_rgb_ || exif_says_adobe_rgb(exif);
+      return exif_fault(exif);
+    }
     if (marker == 0xe1 && begins(kXmp)) return xmp_fault(segment);
     if (marker == 0xed && begins(kPhotoshop)) return iptc_fault(segment.subspan(kPhotoshop.size() + 1));
     if (marker == 0xe2 && begins(kProfile)) {
@@ -36,6 +39,8 @@ class JpegMetadata {
     }
     return nullptr;
   }
+
+  bool adobe_rgb() const { return adobe_rgb_; }
 
   /// What is wrong with the profile, when all have been added.
   const char* profile_fault() const {
@@ -57,6 +62,7 @@ class JpegMetadata {
   }
 
   std::map<int, Bytes> profile_;  ///< by number
+  bool adobe_rgb_ = false;        ///< EXIF says so
 };
 
 bool is_frame_header(unsigned char marker) {
@@ -90,6 +96,7 @@ Result<ContainerFacts> check_jpeg(const std::filesystem::path& file, std::ifstre
     if (marker == 0xd9) {
       if (!facts.size) return malformed(file, "is a malformed JPEG");
       if (const char* why = metadata.profile_fault()) return malformed(file, why);
+      facts.adobe_rgb = metadata.adobe_rgb();
       return facts;
     }
     if (at + 4 > bytes.size()) break;

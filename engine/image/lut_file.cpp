@@ -4,12 +4,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "core/file.h"
 #include "core/text.h"
+#include "image/memory_file.h"
 #include "image/ocio_module.h"
 
 namespace afterglow {
+namespace {
+
+/// A .cube as DaVinci Resolve writes it, without the title, which OpenColorIO knows in the other kind of .cube alone.
+/// Empty: it is none that is to be read so.
+std::string without_title(const std::string& text) {
+  if (text.find("_INPUT_RANGE") == std::string::npos) return "";
+  std::string out;
+  bool titled = false;
+  for (const std::string& line : split(text, '\n')) {
+    const bool title = trim(line).starts_with("TITLE");
+    titled = titled || title;
+    out += (title ? "#" : line) + "\n";  // so that lines keep their numbers
+  }
+  return titled ? out : "";
+}
+
+/// As if it stood in the file.
+Result<Lut> read_text(const OcioModule& module, const std::string& text, const std::filesystem::path& file,
+                      const std::string& correction) {
+  AFTERGLOW_TRY(const MemoryFile memory, MemoryFile::create());
+  if (!(std::ofstream(memory.name(), std::ios::binary) << text).flush())
+    return Error{ErrorKind::io, "there is no memory for its text", file.string()};
+  auto lut = module.read(memory.name(), correction);
+  if (lut) return lut;
+  Error error = std::move(lut).error();
+  error.file = file.string();
+  return error;
+}
+
+}  // namespace
+
 Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, const std::string& correction) {
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file.string()}; };
   std::string extension = lower(file.extension().string());
@@ -26,7 +59,8 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, cons
   // OpenColorIO puts variables of the environment into paths.
   if (file.string().find_first_of("$%") != std::string::npos)
     return fail("a path with '$' or '%' cannot be handed to OpenColorIO; rename the file or its folder");
-  return module->read(file, correction);
+  const std::string untitled = extension == "cube" ? without_title(*text) : "";
+  return untitled.empty() ? module->read(file, correction) : read_text(*module, untitled, file, correction);
 }
 
 bool gives_unit(const Lut& loaded) {

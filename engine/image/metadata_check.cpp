@@ -41,17 +41,19 @@ class Exif {
   /// Of the first directory; none: it says none, or one that there is not.
   std::optional<int> orientation() const {
     constexpr std::uint32_t kTag = 0x0112, kShort = 3;
-    const std::uint64_t first = number(4, 4);
-    if (first + 2 > bytes_.size()) return std::nullopt;
-    const std::uint32_t count = number(first, 2);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const std::uint64_t entry = first + 2 + i * kEntry;
-      if (entry + kEntry > bytes_.size()) break;
-      if (number(entry, 2) != kTag || number(entry + 2, 2) != kShort) continue;
-      const std::uint32_t value = number(entry + 8, 2);
-      return value >= 1 && value <= 8 ? std::optional(static_cast<int>(value)) : std::nullopt;
-    }
-    return std::nullopt;
+    const auto entry = entry_of(number(4, 4), kTag, kShort);
+    if (!entry) return std::nullopt;
+    const std::uint32_t value = number(*entry + 8, 2);
+    return value >= 1 && value <= 8 ? std::optional(static_cast<int>(value)) : std::nullopt;
+  }
+
+  /// By the index of the directory of interoperability, which lies in that of EXIF.
+  bool says_adobe_rgb() const {
+    constexpr std::uint32_t kDirectory = 0x8769, kInterop = 0xa005, kIndex = 1, kText = 2, kLong = 4;
+    const auto exif = entry_of(number(4, 4), kDirectory, kLong);
+    const auto interop = exif ? entry_of(number(*exif + 8, 4), kInterop, kLong) : std::nullopt;
+    const auto index = interop ? entry_of(number(*interop + 8, 4), kIndex, kText) : std::nullopt;
+    return index && text_of(bytes_).substr(*index + 8, 3) == "R03";
   }
 
  private:
@@ -59,6 +61,18 @@ class Exif {
 
   std::uint32_t number(std::size_t at, std::size_t bytes) const {
     return static_cast<std::uint32_t>(ordered(&bytes_[at], bytes, !little_));
+  }
+
+  /// Where a directory's entry with that tag and type begins, which lies wholly within the bytes.
+  std::optional<std::uint64_t> entry_of(std::uint64_t directory, std::uint32_t tag, std::uint32_t type) const {
+    if (directory + 2 > bytes_.size()) return std::nullopt;
+    const std::uint32_t count = number(directory, 2);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint64_t entry = directory + 2 + i * kEntry;
+      if (entry + kEntry > bytes_.size()) break;
+      if (number(entry, 2) == tag && number(entry + 2, 2) == type) return entry;
+    }
+    return std::nullopt;
   }
 
   bool directory(std::uint64_t at, int depth) {
@@ -115,6 +129,11 @@ const char* exif_fault(Bytes exif) {
 std::optional<int> exif_orientation(Bytes exif) {
   exif = behind_name(exif);
   return exif.size() >= 8 && says_order(exif) ? Exif(exif).orientation() : std::nullopt;
+}
+
+bool exif_says_adobe_rgb(Bytes exif) {
+  exif = behind_name(exif);
+  return exif.size() >= 8 && says_order(exif) && Exif(exif).says_adobe_rgb();
 }
 
 const char* icc_fault(Bytes profile) {

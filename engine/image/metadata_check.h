@@ -14,6 +14,8 @@ using Bytes = std::span<const unsigned char>;
 const char* exif_fault(Bytes exif);
 /// The orientation that it says, 1 to 8. None: it says none, or another number.
 std::optional<int> exif_orientation(Bytes exif);
+/// Whether it says that its picture is Adobe RGB: R03 of DCF 2.0, which cameras write in place of a profile.
+bool exif_says_adobe_rgb(Bytes exif);
 /// A whole profile.
 const char* icc_fault(Bytes profile);
 /// A text that may hold rdf:Description elements.

@@ -177,7 +177,8 @@ class OiioFile : public PictureFile {
         part.data_window = {0, 0, spec.width, spec.height};
         part.display_window = part.data_window;
       }
-      part.orientation = container_.orientation.value_or(std::clamp(spec.get_int_attribute("Orientation", 1), 1, 8));
+      const int said = spec.get_int_attribute("Orientation", 1);
+      part.orientation = container_.orientation.value_or(said >= 1 && said <= 8 ? said : 1);
       part.channels = spec.channelnames;
       if (container_.fourth_is_padding && part.channels.size() == 4) part.channels.pop_back();
       if (i > 0) part.name = spec.get_string_attribute("oiio:subimagename", fmt::format("page{}", i + 1));
@@ -185,6 +186,7 @@ class OiioFile : public PictureFile {
       if (spec.deep) part.unreadable = "is a deep picture, which is not supported";
       if (inks(spec))
         part.unreadable = "holds inks (CMYK with an alpha, spot colours), which cannot be read; make it RGB";
+      if (lab(spec)) part.unreadable = "holds CIE Lab colours, which cannot be read; make it RGB";
       if (const auto fits = check_sides(part.data_window, "data window", limits, path_); !fits) {
         if (i == 0) return fits;
         part.unreadable = fits.error().message;  // kept, so that parts and sub-images have the same numbers
@@ -201,6 +203,13 @@ class OiioFile : public PictureFile {
     constexpr int kSeparated = 5;
     return format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kSeparated &&
            spec.nchannels != 3;
+  }
+
+  /// A TIFF whose colours OpenImageIO would have libtiff make RGB of, with eight bits and without adapting their white.
+  bool lab(const OIIO::ImageSpec& spec) const {
+    constexpr int kLab = 8, kIccLab = 9, kItuLab = 10;
+    const int kind = spec.get_int_attribute("tiff:PhotometricInterpretation", 0);
+    return format_ == "tiff" && (kind == kLab || kind == kIccLab || kind == kItuLab);
   }
 
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {

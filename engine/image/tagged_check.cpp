@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -128,7 +129,8 @@ Result<void> check_webp(const std::filesystem::path& file, std::ifstream& in, st
 
 Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
   constexpr int kMostPages = 64;
-  constexpr std::uint32_t kXmp = 700, kProfile = 34675;
+  constexpr std::uint32_t kXmp = 700, kProfile = 34675, kBits = 258;
+  constexpr std::uint32_t kKind = 254, kInner = 330, kDng = 50706;
   const Buffer head = bytes_at(in, 0, 16);
   if (head.size() < 8) return malformed(file, "is truncated");
   const bool big = head[0] == 'M', large = (big ? head[3] : head[2]) == 43;
@@ -143,14 +145,24 @@ Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, st
     const std::uint64_t entries = number(counted.data(), counter);
     if (entries > (size - at) / entry) break;
     const Buffer table = bytes_at(in, at + counter, entries * entry + wide);
+    std::map<std::uint64_t, std::uint64_t> said;  // tag → its value, as far as it is one number
     for (std::size_t i = 0; (i + 1) * entry <= table.size(); ++i) {
       const unsigned char* p = &table[i * entry];
       const std::uint64_t tag = number(p, 2), length = number(p + 4, wide), place = number(p + 4 + wide, wide);
+      constexpr std::uint64_t kShort = 3;
+      said[tag] = number(p + 2, 2) == kShort ? number(p + 4 + wide, 2) : place;
       if ((tag != kXmp && tag != kProfile) || length <= wide || place >= size) continue;
       if (length > kMostMetadata) return malformed(file, "has more than 16 MiB of metadata in one piece");
       const Buffer bytes = bytes_at(in, place, length);
       if (const char* why = tag == kXmp ? xmp_fault(bytes) : icc_fault(bytes)) return malformed(file, why);
     }
+    // What a camera saw lies within; the first picture is a small one, to be shown in its place.
+    const bool small = said.contains(kKind) && (said[kKind] & 1) != 0;
+    if (page == 0 && (said.contains(kDng) || (small && said.contains(kInner))))
+      return malformed(file, "is a camera raw, which has to be developed first; take the TIFF or EXR made of it");
+    // Then a sample is one bit, and the reader takes it for eight.
+    if (entries > 0 && !said.contains(kBits))
+      return malformed(file, "does not say how many bits a sample has (BitsPerSample), which the reader needs");
     if (table.size() < entries * entry + wide) break;
     at = number(&table[entries * entry], wide);
   }

@@ -159,7 +159,7 @@ TEST_F(EarlierFilesTest, ThePreRollLooksAtItsFilesBeforeItIsRead) {
   FrameRecords frames = records({3}, 2);
   const auto before = noted(frames);
   FrameNotes notes(Hash{}, *preset_);
-  const Schedule schedule = schedule_with_histories(frames, request_, 2);
+  const Schedule schedule = schedule_with_histories(frames, request_, 2, {});
   ASSERT_EQ(schedule.frames.size(), 3u);
   for (const auto& scheduled : schedule.frames) {
     const Hash now = notes.inputs_of(scheduled.record->job);
