@@ -114,6 +114,13 @@ class OiioFile : public PictureFile {
     std::span<const std::uint8_t> profile = container_.profile;
     if (passed)
       profile = {static_cast<const std::uint8_t*>(passed->data()), static_cast<std::size_t>(passed->type().size())};
+    if (made_of_inks(spec)) {
+      diagnostics.warn(
+          fmt::format("{}: is CMYK; its inks become RGB by a plain rule, whatever its profile says: make it RGB where "
+                      "colours matter",
+                      path_.string()));
+      profile = {};
+    }
     const bool said = use_container_color(container_, profile, path_.string(), encoding, diagnostics);
     if (!said && integer && format_ != "pnm")  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
@@ -205,11 +212,17 @@ class OiioFile : public PictureFile {
            spec.nchannels != 3;
   }
 
+  /// CMYK of which OpenImageIO has made RGB.
+  bool made_of_inks(const OIIO::ImageSpec& spec) const {
+    constexpr int kSeparated = 5;
+    return (format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kSeparated) ||
+           (format_ == "jpeg" && spec.get_string_attribute("jpeg:ColorSpace") == "CMYK");
+  }
+
   /// A TIFF whose colours OpenImageIO would have libtiff make RGB of, with eight bits and without adapting their white.
   bool lab(const OIIO::ImageSpec& spec) const {
-    constexpr int kLab = 8, kIccLab = 9, kItuLab = 10;
-    const int kind = spec.get_int_attribute("tiff:PhotometricInterpretation", 0);
-    return format_ == "tiff" && (kind == kLab || kind == kIccLab || kind == kItuLab);
+    constexpr int kLab = 8;  // libtiff reads none of the other kinds
+    return format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kLab;
   }
 
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {

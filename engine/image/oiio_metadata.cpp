@@ -12,6 +12,10 @@ OIIO_NAMESPACE_END
 namespace afterglow {
 namespace {
 
+/// GPS:Latitude, GPS:Longitude and such: degrees, minutes, seconds.
+constexpr int kPlaceParts = 3;
+bool is_place(std::string_view name) { return name.starts_with("GPS:"); }
+
 constexpr const char* kDpxRate = "dpx:FrameRate";
 
 /// True: it has a form of its own in some format.
@@ -63,6 +67,8 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
                (type.aggregate == OIIO::TypeDesc::VEC2 || type.aggregate == OIIO::TypeDesc::VEC3 ||
                 type.aggregate == OIIO::TypeDesc::MATRIX44)) {
       entry.value = std::vector<float>(floats, floats + static_cast<int>(type.aggregate));
+    } else if (is_place(entry.name) && type.basetype == OIIO::TypeDesc::FLOAT && type.arraylen == kPlaceParts) {
+      entry.value = std::vector<float>(floats, floats + kPlaceParts);
     } else if (type.is_array() || type.aggregate != OIIO::TypeDesc::SCALAR || type.is_floating_point() ||
                type.basetype == OIIO::TypeDesc::PTR) {
       continue;  // maker notes and other tables of bytes
@@ -108,8 +114,11 @@ OIIO::ParamValueList param_list(const Metadata& metadata) {
       const int parts[2] = {rational->numerator, rational->denominator};
       list.attribute(name, OIIO::TypeRational, parts);
     } else if (const auto* floats = std::get_if<std::vector<float>>(&value)) {
-      const auto aggregate = static_cast<OIIO::TypeDesc::AGGREGATE>(floats->size());
-      list.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, aggregate), floats->data());
+      const auto count = static_cast<int>(floats->size());
+      const OIIO::TypeDesc type =
+          is_place(name) ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::SCALAR, count)
+                         : OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, static_cast<OIIO::TypeDesc::AGGREGATE>(count));
+      list.attribute(name, type, floats->data());
     }
   }
   return list;

@@ -116,6 +116,15 @@ void describe_shape(OIIO::ImageSpec& spec, bool widths) {
   spec.attribute("ResolutionUnit", "none");
 }
 
+/// The library's EXIF of JPEGs has no unit, which means inches.
+void use_inches(OIIO::ImageSpec& spec) {
+  constexpr float kInch = 2.54f;
+  if (!lower(spec.get_string_attribute("ResolutionUnit")).starts_with("cm")) return;
+  for (const char* name : {"XResolution", "YResolution"})
+    if (const float dots = spec.get_float_attribute(name); dots > 0) spec.attribute(name, dots * kInch);
+  spec.attribute("ResolutionUnit", "in");
+}
+
 Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& format, const StripForm& form,
                                  const WriteOptions& options) {
   OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, form.alpha ? 4 : 3,
@@ -138,6 +147,7 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
     case OutputKind::jpeg:
       spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality.value_or(95), 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
+      use_inches(spec);
       describe_shape(spec, true);
       break;
     case OutputKind::tiff:

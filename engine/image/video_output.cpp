@@ -237,7 +237,7 @@ void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPl
                              Tags{"gamma22", 1, 4, 1, kBt709Luma},   Tags{"gamma24", 1, 2, 1, kBt709Luma},
                              Tags{"linear", 1, 8, 1, kBt709Luma},    Tags{"pq", 9, 16, 9, kBt2020Luma},
                              Tags{"hlg", 9, 18, 9, kBt2020Luma},     Tags{"lin_rec2020", 9, 8, 9, kBt2020Luma},
-                             Tags{"lin_p3d65", 12, 8, 1, kBt709Luma}};
+                             Tags{"lin_p3d65", 12, 8, 1, kBt709Luma}, Tags{"display_p3", 12, 13, 1, kBt709Luma}};
   Tags tags{"", 2, 2, 1, kBt709Luma};
   for (const Tags& one : kTags)
     if (one.name == space.name()) tags = one;

@@ -80,6 +80,22 @@ TEST(Cube, NothingCrashes) {
   }
 }
 
+/// OpenColorIO reads a title in one kind of .cube alone, which has no such ranges.
+TEST(Cube, DaVincisAreReadWithTheirTitle) {
+  const TemporaryFolder folder;
+  const std::string table =
+      "LUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0.25 0.75\n# data\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+      "0 0 1\n1 0 1\n0 1 1\n0.5 0.25 0.125\n";
+  std::ofstream(folder / "plain.cube") << table;
+  std::ofstream(folder / "titled.cube") << "TITLE \"a look\"\n" << table;
+  const auto plain = read_lut(folder / "plain.cube"), titled = read_lut(folder / "titled.cube");
+  ASSERT_TRUE(plain && titled) << (titled ? "" : titled.error().text());
+  EXPECT_EQ(titled->table, plain->table);
+  EXPECT_EQ(titled->steps.size(), plain->steps.size());
+  std::ofstream(folder / "short.cube") << "TITLE \"a look\"\nLUT_3D_INPUT_RANGE 0 1\nLUT_3D_SIZE 2\n0 0 0\n";
+  EXPECT_THAT(read_lut(folder / "short.cube").error().file, HasSubstr("short.cube"));
+}
+
 TEST(Cube, EveryFormatRefusesRubbish) {
   const TemporaryFolder folder;
   for (const char* name : {"a.3dl", "a.csp", "a.spi1d", "a.spi3d", "a.clf", "a.cub", "a.hdl", "a.itx", "a.m3d", "a.vf",

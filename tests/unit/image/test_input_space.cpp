@@ -99,7 +99,8 @@ TEST(InputSpace, UnknownNamesAreTold) {
   const auto found = find_input_space("logc");
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().text(),
-            "error: 'logc' is no input space; allowed: aces2065_1, acescct, acescg, adobe_rgb, cineon, display_p3, gamma22, gamma24, hlg, "
+            "error: 'logc' is no input space; allowed: aces2065_1, acescct, acescg, adobe_rgb, cineon, display_p3, "
+            "gamma22, gamma24, hlg, "
             "lin_p3d65, lin_rec2020, linear, logc3, logc4, pq, rec709, slog3, srgb; did you mean 'logc3'?");
 }
 

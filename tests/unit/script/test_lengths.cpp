@@ -73,7 +73,8 @@ TEST_F(Lengths, Messages) {
   EXPECT_EQ(
       error("input_space = \"logc\""),
       "preset.lua:3: error: fx.stack: input_space: 'logc' is no input space; allowed: aces2065_1, acescct, acescg, "
-      "adobe_rgb, cineon, display_p3, gamma22, gamma24, hlg, lin_p3d65, lin_rec2020, linear, logc3, logc4, pq, rec709, slog3, srgb; did you "
+      "adobe_rgb, cineon, display_p3, gamma22, gamma24, hlg, lin_p3d65, lin_rec2020, linear, logc3, logc4, pq, rec709, "
+      "slog3, srgb; did you "
       "mean 'logc3'?");
 }
 
