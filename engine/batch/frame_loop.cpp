@@ -250,6 +250,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->options = planner_.read_options(frame.job);
   reading->options.memory = &memory_;
   reading->scaling = planner_.scaling_of(planned->header);
+  planner_.tell_of_shape(planned->header, frame.job, events_.diagnostics);
   reading->request = std::move(planned->request);
   const auto need = planner_.need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {

@@ -94,6 +94,17 @@ std::optional<Scaling> FramePlanner::scaling_of(const PictureHeader& header) con
   return Scaling{size, half && session_.preset().detailed() ? 2 : 1};
 }
 
+void FramePlanner::tell_of_shape(const PictureHeader& header, const FrameJob& job, Diagnostics& diagnostics) const {
+  const Size whole = header.display_window.size();
+  const MetadataValue* pixels = find_metadata(header.facts->metadata, "PixelAspectRatio");
+  if (!options_.size || !options_.size->reshapes(whole) || (pixels && metadata_number(*pixels, 1) != 1)) return;
+  const auto& [width, height, share] = *options_.size;
+  diagnostics.warn_once(
+      "shape", fmt::format("{}: --size {}x{} changes the shape of the picture, which has {}x{} pixels; --size {} or "
+                           "--size x{} keeps it",
+                           job.input.string(), width, height, whole.width, whole.height, width, height));
+}
+
 FramePlanner::Shape FramePlanner::shape_of(const PictureHeader& header) const {
   Shape shape{.data = header.data_window, .display = header.display_window};
   if (const auto scaling = scaling_of(header)) {

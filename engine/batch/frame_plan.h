@@ -70,6 +70,8 @@ class FramePlanner {
 
   ReadOptions read_options(const FrameJob& job) const;
   std::optional<Scaling> scaling_of(const PictureHeader& header) const;
+  /// Where --size squeezes pictures of square pixels; of others the file says the shape of pixels anew.
+  void tell_of_shape(const PictureHeader& header, const FrameJob& job, Diagnostics& diagnostics) const;
   /// Reads the header. `step`: frames since the one before; `restart`: there is none. Errors: io, script.
   Result<PlannedFrame> plan(const FrameJob& job, double step, bool restart);
   /// Errors: io (above --max-memory).

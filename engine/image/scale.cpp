@@ -125,6 +125,13 @@ Size SizeWish::of(Size display) const {
   return {width > 0 ? width : side(display.width * scale), height > 0 ? height : side(display.height * scale)};
 }
 
+bool SizeWish::reshapes(Size display) const {
+  if (width == 0 || height == 0) return false;
+  constexpr double kRounding = 1.5;
+  const double shape = static_cast<double>(display.width) / display.height;
+  return std::abs(height * shape - width) > kRounding && std::abs(width / shape - height) > kRounding;
+}
+
 Result<SizeWish> parse_size_wish(const std::string& text) {
   const auto whole = [](std::string_view part, int& out) {
     if (part.empty()) return true;

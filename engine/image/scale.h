@@ -16,6 +16,8 @@ struct SizeWish {
   double share = 0;           ///< of both sides, when neither is given
   /// At least 1×1, at most 16384 on a side that is given.
   Size of(Size display) const;
+  /// Whether it asks for another shape than that of the picture, by more than a rounding to even sides.
+  bool reshapes(Size display) const;
 };
 
 /// "1280x720", "1280" (the width), "x720", "50%". Errors: usage.

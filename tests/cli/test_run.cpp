@@ -265,5 +265,21 @@ return fx.effect { name = "wide", settings = { taps = fx.int { default = 9, min 
   EXPECT_THAT(passes("taps = 9, whole = true"), Not(HasSubstr("wide.filter.")));
 }
 
+/// Once for all frames; a rounding to even sides is none.
+TEST_F(Run, ASizeOfAnotherShapeIsTold) {
+  make_preset("look.lua");
+  for (const char* name : {"in/a.0001.exr", "in/a.0002.exr"}) make_exr(name, 640, 270);
+  const auto said = [&](const std::string& size) {
+    const Outcome outcome = run({"run", "look.lua", "in/a.####.exr", "-o", "o.####.png", "--size", size});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_EQ(said("320x180"),
+            "warning: in/a.0001.exr: --size 320x180 changes the shape of the picture, which has 640x270 pixels; --size "
+            "320 or --size x180 keeps it\n");
+  for (const char* size : {"320x135", "320x136", "322x136", "320", "x136", "50%", "1280x540"})
+    EXPECT_EQ(said(size), "") << size;
+}
+
 }  // namespace
 }  // namespace afterglow::test
