@@ -94,13 +94,30 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ec);
 }
 
+/// Of the first frame of another video.
+Error several_videos(const FrameJob& first, const FrameJob& other) {
+  Error error = usage(
+      fmt::format("{} and {} are videos, and one video is made of one", first.input.string(), other.input.string()));
+  error.allowed = "a run for each; ffmpeg -f concat joins what they make";
+  return error;
+}
+
+/// Frames of two videos have the same numbers.
+Error one_place(const FrameJob& job, const std::filesystem::path& earlier) {
+  Error error = usage(
+      fmt::format("{} and {} would both be written to {}", earlier.string(), job.input.string(), job.output.string()));
+  if (job.movie) error.allowed = "a folder like out/, where frames have the names of their videos; a run for each";
+  return error;
+}
+
 Result<void> check_outputs(const std::vector<FrameJob>& jobs, bool one) {
+  for (std::size_t i = 1; i < jobs.size() && is_video_output(jobs[i].output); ++i)
+    if (jobs[i].movie && jobs[i - 1].movie && jobs[i].movie != jobs[i - 1].movie)
+      return several_videos(jobs[i - 1], jobs[i]);
   std::map<fs::path, fs::path> made_from;
   for (const auto& job : jobs) {
     const auto [at, is_new] = made_from.emplace(job.output, job.input);
-    if (!is_new && !one)
-      return usage(fmt::format("{} and {} would both be written to {}", at->second.string(), job.input.string(),
-                               job.output.string()));
+    if (!is_new && !one) return one_place(job, at->second);
     for (const auto& source : job.sources())
       if (same_file(source, job.output))
         return usage(fmt::format("{} would be overwritten by its own result", source.string()));
@@ -263,6 +280,7 @@ Result<void> add_files(const FrameListRequest& request, const OutputNames& names
     list.jobs.push_back(std::move(job));
     return {};
   }
+  if (frames && !pattern.numbered && !is_file(input)) return missing_file(input);
   if (frames && !pattern.numbered)
     return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
   LeftOut others;

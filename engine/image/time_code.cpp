@@ -32,6 +32,13 @@ std::string time_code_text(std::uint32_t coded) {
                      values[3]);
 }
 
+bool is_time_code(std::string_view text) {
+  constexpr std::size_t kFrames = 9;
+  if (text.size() != kFrames + 2) return false;
+  const auto frames = parse_number<int>(text.substr(kFrames));
+  return frames && *frames >= 0 && time_code_of(std::string(text.substr(0, kFrames)) + "00").has_value();
+}
+
 std::optional<std::uint32_t> time_code_of(std::string_view text) {
   constexpr std::size_t kLength = 11;
   if (text.size() != kLength || text[2] != ':' || text[5] != ':' || (text[8] != ':' && text[8] != ';'))

@@ -16,7 +16,9 @@ namespace afterglow {
 inline constexpr const char* kTimeCodeName = "smpte:TimeCode";
 /// Of 32 bits as SMPTE 12M and EXR (TV60) have them; empty: no time of day.
 std::string time_code_text(std::uint32_t coded);
-/// The other way; nothing when the text is none.
+/// Whether the text is one, whatever the frame's number.
+bool is_time_code(std::string_view text);
+/// The other way; nothing when the text is none, or has a frame's number above 39.
 std::optional<std::uint32_t> time_code_of(std::string_view text);
 
 /// The code of the frame that comes `frames` after that of `text`, which is one, at this rate; numbers are dropped

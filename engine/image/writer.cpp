@@ -26,6 +26,7 @@
 #include "image/output_format.h"
 #include "image/reader.h"
 #include "image/strips.h"
+#include "image/time_code.h"
 #include "image/video_output.h"
 #include "image/write_cineon.h"
 #include "image/write_exr.h"
@@ -226,6 +227,22 @@ Result<std::string> picture_bytes(const Picture& picture, const std::string& ext
   }
 }
 
+namespace {
+
+/// Of videos with more than 40 frames a second.
+void tell_of_time_code(const Picture& picture, const fs::path& file, Diagnostics& diagnostics) {
+  const std::string extension = lower(file.extension().string());
+  if (!picture.facts || (extension != ".exr" && extension != ".dpx")) return;
+  const MetadataValue* code = find_metadata(picture.facts->metadata, kTimeCodeName);
+  const std::string text = code ? metadata_text(*code) : "";
+  if (!is_time_code(text) || time_code_of(text)) return;
+  diagnostics.warn_once("time code", fmt::format("{}: the time code {} is left out: EXR and DPX hold frame numbers up "
+                                                 "to 39; PNG and videos hold all",
+                                                 file.string(), text));
+}
+
+}  // namespace
+
 Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics, std::string* stamp) {
   AFTERGLOW_CHECK(check_output(file, options));
@@ -234,6 +251,7 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
     const std::string text = fmt::format("{}: {}", file.string(), message);
     severity == Severity::warning ? diagnostics.warn(text) : diagnostics.note(text);
   });
+  tell_of_time_code(picture, file, diagnostics);
   try {
     AFTERGLOW_CHECK(check_picture(picture));
     Temporary temporary(file);
