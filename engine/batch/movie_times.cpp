@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "image/video_output.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 namespace {
