@@ -34,9 +34,9 @@ Result<Lut> read_text(const OcioModule& module, const std::string& text, const s
   AFTERGLOW_TRY(const MemoryFile memory, MemoryFile::create());
   if (!(std::ofstream(memory.name(), std::ios::binary) << text).flush())
     return Error{ErrorKind::io, "there is no memory for its text", file.string()};
-  auto lut = module.read(memory.name(), correction);
-  if (lut) return lut;
-  Error error = std::move(lut).error();
+  auto table = module.read(memory.name(), correction);
+  if (table) return table;
+  Error error = std::move(table).error();
   error.file = file.string();
   return error;
 }
