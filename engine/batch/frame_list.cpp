@@ -335,7 +335,7 @@ Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diag
   AFTERGLOW_TRY(const OutputNames names, OutputNames::parse(request));
   FrameList list;
   bool standard = false;
-  AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs));
+  AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs, diagnostics));
   std::optional<std::vector<int>> frames;
   const auto choose = [&](const std::string& text) -> Result<void> {
     frames.reset();

@@ -198,14 +198,17 @@ void LeftOut::add(const fs::path& file) {
   if (files++ == 0 || file < first) first = file;
 }
 
+std::string LeftOut::names() const {
+  const std::string name = first.filename().string();
+  return files == 1 ? name + " is" : fmt::format("{} and {} more are", name, files - 1);
+}
+
 void LeftOut::tell(const std::string& input, const Pattern& pattern, Diagnostics& diagnostics) const {
   if (files == 0) return;
-  const std::string name = first.filename().string();
-  const std::string names = files == 1 ? name + " is" : fmt::format("{} and {} more are", name, files - 1);
   const std::string digits = pattern.digits == 1
                                  ? "no zeros in front"
                                  : fmt::format("{} digits, or more without zeros in front", pattern.digits);
-  diagnostics.warn(fmt::format("{}: {} left out: numbers have {} here, and go to {}", input, names, digits,
+  diagnostics.warn(fmt::format("{}: {} left out: numbers have {} here, and go to {}", input, names(), digits,
                                std::numeric_limits<int>::max()));
 }
 

@@ -57,6 +57,8 @@ struct LeftOut {
   std::size_t files = 0;
   std::filesystem::path first;  ///< by name
   void add(const std::filesystem::path& file);
+  /// "a.exr is", "a.exr and 3 more are".
+  std::string names() const;
   /// A warning, where there are any. `input`: as the user wrote the pattern.
   void tell(const std::string& input, const Pattern& pattern, Diagnostics& diagnostics) const;
 };
@@ -67,7 +69,8 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
                                            LeftOut* left_out = nullptr);
 
 /// The pattern of the one sequence of pictures in a folder: "shots/shot.####.exr". Errors: io (none, several: named).
-Result<std::string> sequence_in(const std::filesystem::path& folder);
+/// Pictures whose names have no number go into `others`.
+Result<std::string> sequence_in(const std::filesystem::path& folder, LeftOut* others = nullptr);
 /// The sequence around a picture: its pattern, and which of its frames that is.
 struct SequenceFrame {
   std::string pattern;
@@ -78,6 +81,6 @@ std::optional<SequenceFrame> sequence_around(const std::filesystem::path& file);
 /// Pictures with the sequences around them in place of those that have one, each once.
 std::vector<std::string> in_sequences(const std::vector<std::string>& pictures);
 /// Inputs with the sequences of the folders among them.
-Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs);
+Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs, Diagnostics& diagnostics);
 
 }  // namespace afterglow

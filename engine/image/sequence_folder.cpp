@@ -26,12 +26,16 @@ bool is_picture(const fs::path& file) {
   return !picture_format(file).empty() || lower(file.extension().string()) == ".exr";
 }
 
-/// Notes a file by the last number in its name, the extension left out; in `long_ones` where that has too many digits.
-void note_name(NumberedGroups& groups, const fs::path& file, LeftOut& long_ones) {
+/// Notes a file by the last number in its name, the extension left out; in `long_ones` where that has too many digits,
+/// in `others` where there is none.
+void note_name(NumberedGroups& groups, const fs::path& file, LeftOut& long_ones, LeftOut& others) {
   const std::string name = file.filename().string();
   if (name.starts_with('.') || name.find('#') != std::string::npos) return;
   const auto [begin, end, digits] = frame_number(file);
-  if (digits == 0) return;
+  if (digits == 0) {
+    if (is_picture(file)) others.add(file);
+    return;
+  }
   if (digits > kMostFrameDigits) {
     if (is_picture(file)) long_ones.add(file);
     return;
@@ -68,18 +72,19 @@ bool is_around(const Pattern& pattern, int frame, const fs::path& file, bool ove
 
 }  // namespace
 
-Result<std::string> sequence_in(const fs::path& folder) {
+Result<std::string> sequence_in(const fs::path& folder, LeftOut* others) {
   NumberedGroups groups;
-  LeftOut long_ones;
+  LeftOut long_ones, unnumbered;
   std::error_code ec, ignored;
   fs::directory_iterator it(folder, ec);
   for (const fs::directory_iterator end; !ec && it != end; it.increment(ec))
-    if (it->is_regular_file(ignored)) note_name(groups, it->path(), long_ones);
+    if (it->is_regular_file(ignored)) note_name(groups, it->path(), long_ones, unnumbered);
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
   std::vector<std::string> found;
   for (const auto& [name, group] : groups)
     if (is_picture(group.example))
       found.push_back(pattern_of(folder, name, std::min<std::size_t>(group.digits, kMostFrameDigits)));
+  if (others) *others = unnumbered;
   if (found.size() == 1) return found.front();
   constexpr std::size_t kMostNamed = 4;
   Error error{ErrorKind::io,
@@ -95,7 +100,7 @@ Result<std::string> sequence_in(const fs::path& folder) {
 std::optional<SequenceFrame> sequence_around(const fs::path& file) {
   NumberedGroups own;
   LeftOut ignored;
-  note_name(own, file, ignored);
+  note_name(own, file, ignored, ignored);
   if (own.empty() || !is_picture(file) || !is_there(file)) return std::nullopt;
   const auto& [name, group] = *own.begin();
   const std::string written = file.filename().string().substr(name.first.size(), group.digits);
@@ -123,11 +128,18 @@ std::vector<std::string> in_sequences(const std::vector<std::string>& pictures) 
   return out;
 }
 
-Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs) {
+Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs, Diagnostics& diagnostics) {
   for (auto& input : inputs) {
     std::error_code ec;
     if (!fs::is_directory(input, ec)) continue;
-    AFTERGLOW_TRY(input, sequence_in(input));
+    LeftOut others;
+    const std::string folder = input;
+    AFTERGLOW_TRY(input, sequence_in(folder, &others));
+    if (others.files > 0)
+      diagnostics.warn_once("unnumbered " + folder,
+                            fmt::format("{}: {} left out: a folder stands for its numbered pictures; others are given "
+                                        "by their names",
+                                        folder, others.names()));
   }
   return inputs;
 }

@@ -193,7 +193,7 @@ Result<void> Footage::add_inputs(const FootageOptions& options, Diagnostics& dia
   if (!options.frames.empty()) {
     AFTERGLOW_TRY(wanted, parse_frames(options.frames));
   }
-  AFTERGLOW_TRY(const auto inputs, with_sequences(options.inputs));
+  AFTERGLOW_TRY(const auto inputs, with_sequences(options.inputs, diagnostics));
   for (const std::string& input : inputs) {
     const std::size_t before = missing_.size();
     const int first = frames();

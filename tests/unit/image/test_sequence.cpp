@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "image/sequence.h"
+#include "make_files.h"
 #include "temporary_folder.h"
 
 namespace afterglow {
@@ -114,6 +115,16 @@ TEST(Pattern, FoldersAreCalledWhatTheyAreCalled) {
     EXPECT_EQ(parse_pattern((inside / "new.exr").string()).value().file(1), inside / "new.exr");
   }
   EXPECT_EQ(parse_pattern("no such 50%%/take#3/s.##.exr").value().file(7), "no such 50%/take#3/s.07.exr");
+}
+
+TEST(Pattern, PicturesBesideTheSequenceOfAFolderAreNamed) {
+  const TemporaryFolder folder;
+  for (const char* name : {"n.0001.exr", "n.0002.exr", "still.exr", "cover.exr", "notes.txt", ".hidden.exr"})
+    std::ofstream(folder / name) << "x";
+  Messages messages;
+  EXPECT_EQ(with_sequences({folder.path()}, messages.diagnostics).value().front(), folder / "n.####.exr");
+  EXPECT_THAT(messages.warnings,
+              testing::ElementsAre(testing::HasSubstr(": cover.exr and 1 more are left out: a folder")));
 }
 
 TEST(Pattern, FramesBeforeZeroAreOfTheSequence) {
