@@ -61,7 +61,7 @@ void add_cuts(CLI::App& command, std::string& into, const std::string& group) {
   command
       .add_option("--cuts", into,
                   "Frames that begin a shot, where effects that look back begin anew: 25,49; auto: found in the "
-                  "pictures; none (default: found in videos, none in pictures)")
+                  "pictures; all: each by itself; none (default: found in videos, none in pictures)")
       ->type_name("LIST")
       ->group(group);
 }

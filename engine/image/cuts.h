@@ -11,8 +11,8 @@
 namespace afterglow {
 
 struct Cuts {
-  /// What says where: pictures of videos, pictures of whatever comes, or `frames` alone.
-  enum class By { videos, pictures, frames };
+  /// What says where: pictures of videos, pictures of whatever comes, `frames` alone, or nothing: each frame is a shot.
+  enum class By { videos, pictures, frames, each };
   By by = By::videos;
   std::vector<int> frames{};  ///< that begin a shot, rising
 
@@ -22,7 +22,7 @@ struct Cuts {
   bool between(int before, int frame) const;
 };
 
-/// "auto": By::pictures; "none"; else numbers as for --frames: "25,49". Errors: usage.
+/// "auto": By::pictures; "all": By::each; "none"; else numbers as for --frames: "25,49". Errors: usage.
 Result<Cuts> parse_cuts(const std::string& text);
 
 }  // namespace afterglow

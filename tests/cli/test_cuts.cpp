@@ -89,6 +89,12 @@ TEST_F(CutsTest, OfSequencesAreToldOrLookedFor) {
   EXPECT_EQ(told(), (std::vector<int>{3, 7}));
 }
 
+/// Photographs are no film, though their names are numbered.
+TEST_F(CutsTest, EachPictureByItself) {
+  EXPECT_EQ(counts("in/shot.####.exr", {"--cuts", "all", "--frames", "4-8"}), (Counts{1, 1, 1, 1, 1}));
+  EXPECT_EQ(nlohmann::json::parse(read("report.json")).at("pre_roll"), 0);
+}
+
 /// Whichever frames are asked for: nothing of another shot is handed on, or needed.
 TEST_F(CutsTest, AreTheSameInParts) {
   const std::string shot = "in/shot.####.exr";
@@ -129,7 +135,7 @@ TEST_F(CutsTest, WordsThatAreNoneAreRefused) {
   for (const char* words : {"some", "1-", "5,x"}) {
     const Outcome outcome = run({"run", "count.lua", "in/shot.####.exr", "-o", "out/", "--cuts", words});
     EXPECT_EQ(outcome.exit_code, kUsage);
-    EXPECT_THAT(outcome.err, HasSubstr("auto, none, or frames that begin a shot: 25,49"));
+    EXPECT_THAT(outcome.err, HasSubstr("auto, all, none, or frames that begin a shot: 25,49"));
     EXPECT_EQ(run({"play", "count.lua", "in/shot.####.exr", "--headless", "--cuts", words}).exit_code, kUsage);
   }
 }

@@ -177,6 +177,8 @@ TEST(Cuts, AreToldByNumbers) {
   EXPECT_TRUE(cuts->between(11, 30)) << "frames were left out";
   EXPECT_FALSE(cuts->between(25, 26));
   EXPECT_FALSE(cuts->between(26, 25));
+  EXPECT_TRUE(parse_cuts("all")->between(1, 2));
+  EXPECT_FALSE(parse_cuts("all")->between(2, 1));
   EXPECT_TRUE(parse_cuts("auto")->looks(false));
   EXPECT_FALSE(parse_cuts("none")->looks(true));
   EXPECT_TRUE(Cuts{}.looks(true) && !Cuts{}.looks(false));
