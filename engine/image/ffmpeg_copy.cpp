@@ -64,8 +64,14 @@ bool head_takes(const AVOutputFormat& format, const AVStream& from) {
   return takes;
 }
 
+/// FFmpeg from 6.1 on writes PCM into MP4, and few players know it there.
+bool is_unusual(const AVOutputFormat& format, AVCodecID codec) {
+  return std::string_view(format.name) == "mp4" && std::string_view(avcodec_get_name(codec)).starts_with("pcm_");
+}
+
 bool can_hold(const AVOutputFormat& format, const AVStream& from) {
   const AVCodecParameters& parameters = *from.codecpar;
+  if (is_unusual(format, parameters.codec_id)) return false;
   if (avformat_query_codec(&format, parameters.codec_id, FF_COMPLIANCE_NORMAL) != 1) return false;
   return parameters.codec_type != AVMEDIA_TYPE_AUDIO || !is_quicktime(format) || head_takes(format, from);
 }
