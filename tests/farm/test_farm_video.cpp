@@ -311,7 +311,7 @@ TEST_F(FarmVideo, WhatCannotBeJoinedIsRefusedBeforeAnyWork) {
   refused({"clip.mp4", "-o", "out/a.apng"}, kUsage, "apng files cannot be joined");
   refused({"clip.mp4", "-o", "out/a.mp4", "--codec", "prores"}, kUsage, "mp4 files do not hold prores");
   refused({"clip.mp4", "-o", "out/a.mp4", "--audio", "none.wav"}, kFiles, "none.wav: error: no such file");
-  refused({"clip.mp4", "clip.mp4", "-o", "out/a.mp4"}, kUsage, "takes frames of one video");
+  refused({"clip.mp4", "clip.mp4", "-o", "out/a.mp4"}, kUsage, "are videos, and one video is made of one");
   EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
   ASSERT_EQ(farm({"look.lua", "clip.mp4", "-o", "out/####.exr", "--jobs", "jobs.json"}).exit_code, kDone);
   const Outcome join = farm({"join", "out"});
