@@ -14,6 +14,7 @@
 #include "core/exception.h"
 #include "core/text.h"
 #include "image/icc_profile.h"
+#include "image/jpeg_iptc.h"
 #include "image/memory_file.h"
 #include "image/metadata.h"
 #include "image/oiio_metadata.h"
@@ -46,6 +47,18 @@ class OiioOutput : public OIIO::Filesystem::IOProxy {
 
  private:
   OutputFile& file_;
+};
+
+/// A JPEG comes in one piece.
+class JpegOutput : public OiioOutput {
+ public:
+  using OiioOutput::OiioOutput;
+  size_t write(const void* data, size_t size) override {
+    const auto* bytes = static_cast<const std::uint8_t*>(data);
+    std::vector<std::uint8_t> jpeg(bytes, bytes + size);
+    tell_iptc_letters(jpeg);
+    return OiioOutput::write(jpeg.data(), jpeg.size()) == jpeg.size() ? size : 0;
+  }
 };
 
 /// Codes of 10 and 12 bits as OpenImageIO wants them: of 16, the upper bits once more below.
@@ -244,8 +257,9 @@ Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format,
     if (format.kind == OutputKind::tiff) return write_through_memory(picture, format, out, options);
     if (format.kind == OutputKind::webp) return write_webp(picture, format, out, options);
     if (format.kind == OutputKind::jpeg2000) AFTERGLOW_CHECK(check_jpeg2000(picture.display_window.size()));
-    OiioOutput proxy(out, name);
-    return write_rows(picture, format, name, &proxy, options);
+    OiioOutput plain(out, name);
+    JpegOutput jpeg(out, name);
+    return write_rows(picture, format, name, format.kind == OutputKind::jpeg ? &jpeg : &plain, options);
   } catch (const std::exception& error) {
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", exception_text(error))};
   }

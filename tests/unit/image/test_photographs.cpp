@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/file.h"
+#include "image/metadata.h"
 #include "image/writer.h"
 #include "make_files.h"
 #include "temporary_folder.h"
@@ -210,6 +211,34 @@ TEST_F(Photographs, KeepTheirPlaceAndTheirDots) {
   ASSERT_TRUE(scan);
   EXPECT_NEAR(scan->spec().get_float_attribute("XResolution"), 254, 0.5);
   EXPECT_EQ(scan->spec().get_string_attribute("ResolutionUnit"), "in");
+}
+
+/// Where the block of IPTC begins, behind its length; empty where there is none.
+std::string iptc_of(const std::string& jpeg) {
+  const std::string head("8BIM\x04\x04\0\0\0\0", 10);
+  const std::size_t at = jpeg.find(head);
+  if (at == std::string::npos) return "";
+  const auto size = static_cast<unsigned char>(jpeg[at + 10]) * 256u + static_cast<unsigned char>(jpeg[at + 11]);
+  const auto segment = static_cast<unsigned char>(jpeg[at - 16]) * 256u + static_cast<unsigned char>(jpeg[at - 15]);
+  EXPECT_EQ(segment, 2 + 14 + 12 + size) << "both lengths";
+  return jpeg.substr(at + 12, size);
+}
+
+/// IIM 4.2: without record 1:90 readers take texts for those of one-byte alphabets.
+TEST_F(Photographs, NamesSayThatTheyAreUtf8) {
+  for (const auto& [artist, told] : {std::pair("J\xc3\xbcrgen", true), {"Jurgen", false}}) {
+    OIIO::ImageSpec spec = make_spec(40, 24, {"R", "G", "B"}, OIIO::TypeUInt8);
+    spec.attribute("Artist", artist);
+    make_file(folder_ / "in.png", {spec}, {marks(40, 24, 3)});
+    ASSERT_TRUE(write_picture(read_or_fail(folder_ / "in.png"), folder_ / "out.jpg", {}, messages_.diagnostics));
+    const std::string block = iptc_of(read_file(folder_ / "out.jpg").value());
+    EXPECT_EQ(block.starts_with(std::string("\x1c\x01\x5a\0\x03\x1b%G", 8)), told) << artist;
+    EXPECT_THAT(block, HasSubstr(std::string("\x1c\x02\x50", 3)));
+    EXPECT_THAT(block, HasSubstr(artist));
+    const Picture back = read_or_fail(folder_ / "out.jpg");
+    EXPECT_EQ(back.color.width, 40);
+    EXPECT_EQ(metadata_text(*find_metadata(back.facts->metadata, "Artist")), artist);
+  }
 }
 
 }  // namespace
