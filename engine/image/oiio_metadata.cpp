@@ -7,6 +7,7 @@
 // The header of OpenImageIO that declares it (tiffutils) wants those of libtiff.
 OIIO_NAMESPACE_BEGIN
 OIIO_API bool decode_exif(string_view exif, ImageSpec& spec);
+OIIO_API void encode_exif(const ImageSpec& spec, std::vector<char>& blob);
 OIIO_NAMESPACE_END
 
 namespace afterglow {
@@ -98,6 +99,15 @@ void correct_jpeg_shape(Metadata& metadata) {
 
 void add_exif(std::span<const std::uint8_t> exif, OIIO::ImageSpec& spec) {
   if (!exif.empty()) OIIO::decode_exif({reinterpret_cast<const char*>(exif.data()), exif.size()}, spec);
+}
+
+std::vector<char> exif_of(const OIIO::ParamValueList& list) {
+  if (list.empty()) return {};
+  OIIO::ImageSpec spec;
+  spec.extra_attribs = list;
+  std::vector<char> block;
+  OIIO::encode_exif(spec, block);
+  return block;
 }
 
 OIIO::ParamValueList param_list(const Metadata& metadata) {

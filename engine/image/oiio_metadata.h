@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "image/metadata.h"
 
@@ -19,6 +20,9 @@ void correct_jpeg_shape(Metadata& metadata);
 
 /// What a block of EXIF says, which has been checked (metadata_check.h); empty: nothing.
 void add_exif(std::span<const std::uint8_t> exif, OIIO::ImageSpec& spec);
+
+/// A block of EXIF of what the list says; empty where it says nothing that EXIF has.
+std::vector<char> exif_of(const OIIO::ParamValueList& list);
 
 OIIO::ParamValueList param_list(const Metadata& metadata);
 

@@ -129,7 +129,7 @@ void describe_shape(OIIO::ImageSpec& spec, bool widths) {
   spec.attribute("ResolutionUnit", "none");
 }
 
-/// The library's EXIF of JPEGs has no unit, which means inches.
+/// The library's EXIF has no unit, which means inches.
 void use_inches(OIIO::ImageSpec& spec) {
   constexpr float kInch = 2.54f;
   if (!lower(spec.get_string_attribute("ResolutionUnit")).starts_with("cm")) return;
@@ -236,7 +236,10 @@ Result<void> write_webp(const Picture& picture, const OutputFormat& format, Outp
   AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   std::optional<float> quality;
   if (compression.name == "lossy") quality = compression.level < 0 ? kQuality : compression.level;
-  return write_webp(picture, strip_form(picture, format, options), out, quality);
+  OIIO::ImageSpec said;
+  if (picture.facts) said.extra_attribs = param_list(kept_metadata(*picture.facts));
+  use_inches(said);
+  return write_webp(picture, strip_form(picture, format, options), out, quality, exif_of(said.extra_attribs));
 }
 
 /// libtiff opens its file itself: OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then

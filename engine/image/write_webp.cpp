@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <webp/encode.h>
+#include <webp/mux.h>
 
 #include <vector>
 
@@ -21,9 +22,31 @@ struct PictureOfWebp : WebPPicture {
   bool valid;
 };
 
+struct MemoryOfWebp : WebPMemoryWriter {
+  MemoryOfWebp() { WebPMemoryWriterInit(this); }
+  ~MemoryOfWebp() { WebPMemoryWriterClear(this); }
+  MemoryOfWebp(const MemoryOfWebp&) = delete;
+  MemoryOfWebp& operator=(const MemoryOfWebp&) = delete;
+};
+
+/// False: no memory.
+bool write_with_exif(const MemoryOfWebp& made, std::span<const char> exif, OutputFile& out) {
+  const WebPData whole{made.mem, made.size};
+  const WebPData block{reinterpret_cast<const std::uint8_t*>(exif.data()), exif.size()};
+  WebPMux* const mux = WebPMuxCreate(&whole, 0);
+  WebPData assembled{};
+  const bool done =
+      mux && WebPMuxSetChunk(mux, "EXIF", &block, 0) == WEBP_MUX_OK && WebPMuxAssemble(mux, &assembled) == WEBP_MUX_OK;
+  if (done) out.write(assembled.bytes, assembled.size);
+  WebPDataClear(&assembled);
+  WebPMuxDelete(mux);
+  return done;
+}
+
 }  // namespace
 
-Result<void> write_webp(const Picture& picture, const StripForm& form, OutputFile& out, std::optional<float> quality) {
+Result<void> write_webp(const Picture& picture, const StripForm& form, OutputFile& out, std::optional<float> quality,
+                        std::span<const char> exif) {
   const Size size = picture.display_window.size();
   if (size.width > WEBP_MAX_DIMENSION || size.height > WEBP_MAX_DIMENSION)
     return Error{ErrorKind::io, fmt::format("cannot be written: WebP files hold sides up to {}, not {}x{}",
@@ -45,12 +68,20 @@ Result<void> write_webp(const Picture& picture, const StripForm& form, OutputFil
   webp.use_argb = quality ? 0 : 1;
   webp.width = size.width;
   webp.height = size.height;
-  webp.writer = write_some;
-  webp.custom_ptr = &out;
+  MemoryOfWebp memory;
+  if (exif.empty()) {
+    webp.writer = write_some;
+    webp.custom_ptr = &out;
+  } else {
+    webp.writer = WebPMemoryWrite;
+    webp.custom_ptr = &memory;
+  }
   const auto stride = static_cast<int>(row_bytes);
   done = form.alpha ? WebPPictureImportRGBA(&webp, pixels.data(), stride) != 0
                     : WebPPictureImportRGB(&webp, pixels.data(), stride) != 0;
-  if (done && WebPEncode(&config, &webp) != 0) return {};
+  done = done && WebPEncode(&config, &webp) != 0;
+  if (done && exif.empty()) return {};
+  if (done && write_with_exif(memory, exif, out)) return {};
   return Error{ErrorKind::io, fmt::format("cannot be written: libwebp failed ({})", static_cast<int>(webp.error_code))};
 }
 

@@ -70,6 +70,29 @@ TEST(WebpFile, SaysWhatItsExifSays) {
   }
 }
 
+/// As EXIF; the pixels are those without.
+TEST(WebpFile, KeepsMetadata) {
+  const TemporaryFolder folder;
+  for (const char* compression : {"", "lossy:80"})
+    for (const bool alpha : {false, true}) {
+      Picture picture = wedge(37, 53, alpha);
+      ASSERT_TRUE(write(picture, folder / "plain.webp", compressed(compression)));
+      auto facts = std::make_shared<FileFacts>();
+      facts->metadata = {{"Artist", std::string("J\xc3\xbcrgen")},
+                         {"XResolution", 100.f},
+                         {"YResolution", 100.f},
+                         {"ResolutionUnit", std::string("cm")}};
+      picture.facts = facts;
+      ASSERT_TRUE(write(picture, folder / "said.webp", compressed(compression)));
+      const Picture plain = read_or_fail(folder / "plain.webp"), said = read_or_fail(folder / "said.webp");
+      EXPECT_EQ(said.color.pixels, plain.color.pixels);
+      EXPECT_EQ(said.has_alpha, alpha);
+      EXPECT_EQ(metadata_text(*find_metadata(said.facts->metadata, "Artist")), "J\xc3\xbcrgen");
+      EXPECT_NEAR(metadata_number(*find_metadata(said.facts->metadata, "XResolution"), 0), 254, 0.1) << "of an inch";
+      EXPECT_FALSE(find_metadata(plain.facts->metadata, "Artist"));
+    }
+}
+
 TEST(WebpFile, Lossy) {
   const TemporaryFolder folder;
   Picture picture = wedge(64, 64, false);
