@@ -164,13 +164,16 @@ bool FrameLoop::looks_for_cuts(const FrameJob& job) const {
 bool FrameLoop::begins_shot(const Reading& reading) const {
   if (!options_.histories || !last_) return false;
   const FrameJob& job = reading.frame->job;
-  return options_.cuts.between(*last_, job.frame) || (looks_for_cuts(job) && !same_shot(last_sketch_, reading.sketch));
+  if (options_.cuts.between(*last_, job.frame)) return true;
+  if (!looks_for_cuts(job) || reading.sketch.blank) return false;
+  return last_sketch_.blank || !same_shot(last_sketch_, reading.sketch);
 }
 
 /// The next frame follows none.
 void FrameLoop::begin_shot() {
   last_.reset();
   gaps_.clear();
+  last_sketch_ = {};
 }
 
 /// What there was no room for.
@@ -342,7 +345,7 @@ Result<void> FrameLoop::finish_running() {
   if (options_.histories && last_ && !reading->request.restart)
     for (const auto& name : replaced) ++replaced_[name];
   last_ = frame.job.frame;
-  last_sketch_ = std::move(reading->sketch);
+  if (!reading->sketch.blank) last_sketch_ = std::move(reading->sketch);
   if (reading->pre_roll) {
     frame.state = FrameRecord::State::done;
     return {};

@@ -102,7 +102,7 @@ class FrameLoop {
   Overlap overlap_;
   std::map<std::string, int> replaced_;  ///< histories that began anew within a sequence, and in how many frames
   std::optional<int> last_;              ///< number of the frame that the next one follows
-  ShotSketch last_sketch_;               ///< of its picture
+  ShotSketch last_sketch_;               ///< of the last picture of its shot that is not blank
   std::vector<std::size_t> gaps_;        ///< places of frames of its sequence that are not in its history: they failed
   std::optional<int> begun_;             ///< number of the frame that was evaluated last
   std::deque<SharedSkips> skips_;        ///< of frames so far, the newest first

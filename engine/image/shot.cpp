@@ -18,6 +18,10 @@ constexpr int kSamples = 8;         // at most, of a cell on each side
 constexpr float kBrightest = 1000;  // that a cell counts for, ÷ the geometric mean: a spark is no picture
 constexpr float kDark = 0.02f;      // of the mean, which is added before the logarithm
 constexpr float kDarkest = 1e-6f;   // the same where there is no light
+constexpr float kBar = 0.01f, kBarNoise = 2e-4f;  // of the mean, and beside it, is what a black bar has at most
+constexpr int kBarEdge = 3;                       // cells beside it: a part of one, and two whose details see it
+constexpr double kBlank = 0.2;                    // stops by which what shows nothing varies
+constexpr float kOtherLevel = 1;                  // stops; with other details it is another place
 constexpr double kToneNoise = 0.05, kDetailNoise = 0.02;  // stops
 constexpr double kTonesAlike = 0.75, kDetailsAlike = 0.4;
 
@@ -108,6 +112,37 @@ std::vector<float> details_of(const Cells& cells) {
   return out;
 }
 
+/// What lies within the bars of both.
+ShotSketch::Bars common(const ShotSketch::Bars& a, const ShotSketch::Bars& b) {
+  return {std::min(a.left, b.left), std::min(a.right, b.right), std::min(a.top, b.top), std::min(a.bottom, b.bottom)};
+}
+
+ShotSketch::Bars bars_of(const Cells& cells) {
+  double sum = 0;
+  for (const glm::vec3& cell : cells) sum += brightness(cell);
+  const float most = kBar * static_cast<float>(sum / static_cast<double>(cells.size())) + kBarNoise;
+  const auto dark = [&](int x, int y) { return brightness(cells[static_cast<std::size_t>(y * kWide + x)]) < most; };
+  const auto row = [&](int y) {
+    for (int x = 0; x < kWide; ++x)
+      if (!dark(x, y)) return false;
+    return true;
+  };
+  const auto column = [&](int x) {
+    for (int y = 0; y < kHigh; ++y)
+      if (!dark(x, y)) return false;
+    return true;
+  };
+  constexpr int kWidest = kWide / 4, kHighest = kHigh / 4;
+  ShotSketch::Bars out;
+  while (out.left < kWidest && column(out.left)) ++out.left;
+  while (out.right < kWidest && column(kWide - 1 - out.right)) ++out.right;
+  while (out.top < kHighest && row(out.top)) ++out.top;
+  while (out.bottom < kHighest && row(kHigh - 1 - out.bottom)) ++out.bottom;
+  for (int* bar : {&out.left, &out.right, &out.top, &out.bottom})
+    if (*bar > 0) *bar += kBarEdge;
+  return out;
+}
+
 /// Of what two sketches share when one is moved.
 struct Shared {
   double first = 0, second = 0, first_squares = 0, second_squares = 0, products = 0;
@@ -141,17 +176,29 @@ struct Plane {
 constexpr Plane kTones{kTonesWide, kTonesHigh, 3, kTonesWide / 4, kTonesHigh / 4 + 1, true, kToneNoise};
 constexpr Plane kDetails{kWide, kHigh, 1, kWide / 4, kHigh / 4, false, kDetailNoise};
 
+/// Where neither has bars, in cells of the plane.
+struct Inside {
+  int left, right, top, bottom;  ///< the latter of each beyond it
+};
+
+Inside inside_of(const Plane& plane, const ShotSketch::Bars& bars) {
+  const int part = kWide / plane.wide;
+  const auto cells = [part](int fine) { return (fine + part - 1) / part; };
+  return {cells(bars.left), plane.wide - cells(bars.right), cells(bars.top), plane.high - cells(bars.bottom)};
+}
+
 /// Correlation of what they share when the second is moved by (x, y).
-double correlation(const std::vector<float>& a, const std::vector<float>& b, const Plane& plane, int x, int y) {
-  const int length = plane.wide - std::abs(x);
+double correlation(const std::vector<float>& a, const std::vector<float>& b, const Plane& plane, const Inside& inside,
+                   int x, int y) {
+  const int left = inside.left + std::max(x, 0), length = inside.right + std::min(x, 0) - left;
   double products = 0, first = 0, second = 0, count = 0;
   for (int channel = 0; channel < plane.channels; ++channel) {
     Shared shared;
-    for (int row = std::max(y, 0); row < plane.high + std::min(y, 0); ++row) {
+    for (int row = inside.top + std::max(y, 0); row < inside.bottom + std::min(y, 0); ++row) {
       const auto line = [&](int of, int from) {
         return static_cast<std::size_t>((channel * plane.high + of) * plane.wide + from);
       };
-      shared.add(a.data() + line(row, std::max(x, 0)), b.data() + line(row - y, std::max(-x, 0)), length);
+      shared.add(a.data() + line(row, left), b.data() + line(row - y, left - x), length);
     }
     if (plane.centered) shared.center();
     products += shared.products;
@@ -164,12 +211,31 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, con
 }
 
 /// Whether they are, moved somehow; not at all is tried first, since most frames follow their shot.
-bool alike(const std::vector<float>& a, const std::vector<float>& b, const Plane& plane, double least) {
+bool alike(const std::vector<float>& a, const std::vector<float>& b, const Plane& plane, const ShotSketch::Bars& bars,
+           double least) {
+  const Inside inside = inside_of(plane, bars);
   for (int far = 0; far <= plane.shift_x; ++far)
     for (int y = -std::min(far, plane.shift_y); y <= std::min(far, plane.shift_y); ++y)
       for (int x = -far; x <= far; x += std::abs(y) == far || far == 0 ? 1 : 2 * far)
-        if (correlation(a, b, plane, x, y) >= least) return true;
+        if (correlation(a, b, plane, inside, x, y) >= least) return true;
   return false;
+}
+
+/// By how much the numbers of a plane vary within the bars, root mean square.
+double variation(const std::vector<float>& numbers, const Plane& plane, const ShotSketch::Bars& bars) {
+  const Inside inside = inside_of(plane, bars);
+  double squares = 0, count = 0;
+  for (int channel = 0; channel < plane.channels; ++channel) {
+    Shared one;
+    for (int row = inside.top; row < inside.bottom; ++row) {
+      const float* from = numbers.data() + (channel * plane.high + row) * plane.wide + inside.left;
+      one.add(from, from, inside.right - inside.left);
+    }
+    if (plane.centered) one.center();
+    squares += one.first_squares;
+    count += one.count;
+  }
+  return std::sqrt(std::max(squares, 0.0) / std::max(count, 1.0));
 }
 
 }  // namespace
@@ -178,13 +244,20 @@ ShotSketch sketch_of(const Picture& picture) {
   if (picture.color.width <= 0 || picture.color.height <= 0) return {};
   Cells cells = cells_of(picture);
   hold_sparks(cells);
-  return {tones_of(cells), details_of(cells)};
+  ShotSketch out{.tones = tones_of(cells), .details = details_of(cells), .levels = {}, .bars = bars_of(cells)};
+  constexpr std::size_t kPlane = kTonesWide * kTonesHigh;
+  for (std::size_t i = 0; i < out.tones.size(); ++i) out.levels[i / kPlane] += out.tones[i] / kPlane;
+  out.blank = variation(out.tones, kTones, out.bars) < kBlank && variation(out.details, kDetails, out.bars) < kBlank;
+  return out;
 }
 
 bool same_shot(const ShotSketch& before, const ShotSketch& now) {
-  if (before.tones.empty() || now.tones.empty()) return true;
-  return alike(before.tones, now.tones, kTones, kTonesAlike) ||
-         alike(before.details, now.details, kDetails, kDetailsAlike);
+  const ShotSketch::Bars bars = common(before.bars, now.bars);
+  bool other_level = false;
+  for (std::size_t i = 0; i < now.levels.size(); ++i)
+    other_level = other_level || std::abs(now.levels[i] - before.levels[i]) > kOtherLevel;
+  return (!other_level && alike(before.tones, now.tones, kTones, bars, kTonesAlike)) ||
+         alike(before.details, now.details, kDetails, bars, kDetailsAlike);
 }
 
 }  // namespace afterglow

@@ -9,6 +9,7 @@ bool ShotWatch::begins(const Footage& footage, int position, const Picture& pict
   Frame asked{.clip = clip.key, .number = frame.number};
   const bool looks = cuts_.looks(footage.movie(frame.picture) != nullptr);
   if (looks) asked.sketch = sketch_of(picture);
+  const bool blank = asked.sketch.blank;
   if (!shown_) {
     asked.begins = false;
   } else if (shown_->clip != clip.key) {
@@ -16,8 +17,11 @@ bool ShotWatch::begins(const Footage& footage, int position, const Picture& pict
   } else if (shown_->number == frame.number) {
     asked.begins = shown_->begins;
   } else {
-    asked.begins = cuts_.between(shown_->number, frame.number) || (looks && !same_shot(shown_->sketch, asked.sketch));
+    const ShotSketch& before = shown_->sketch;
+    asked.begins = cuts_.between(shown_->number, frame.number) ||
+                   (looks && !blank && (before.blank || !same_shot(before, asked.sketch)));
   }
+  if (blank && shown_ && !asked.begins) asked.sketch = shown_->sketch;
   asked_ = std::move(asked);
   return asked_->begins;
 }

@@ -25,7 +25,7 @@ class ShotWatch {
   struct Frame {
     std::string clip;
     int number = 0;
-    ShotSketch sketch;
+    ShotSketch sketch;  ///< of the last picture of its shot that is not blank
     bool begins = false;
   };
   std::optional<Frame> shown_, asked_;

@@ -108,6 +108,24 @@ TEST_F(CutsTest, AreTheSameInParts) {
   EXPECT_EQ(told(), (std::vector<int>{}));
 }
 
+/// Black frames are of the shot before them; the first light behind a black beginning begins one.
+TEST_F(CutsTest, BlackIsNoShot) {
+  write("black.lua", "return require(\"afterglow\").stack { require(\"afterglow\").exposure { ev = -32 } }\n");
+  fs::create_directory(path("cut"));
+  const auto frame = [&](int number, int from) {
+    fs::copy(path(fmt::format("in/shot.000{}.exr", from)), path(fmt::format("cut/shot.000{}.exr", number)),
+             fs::copy_options::overwrite_existing);
+  };
+  ASSERT_EQ(run({"run", "black.lua", "in/shot.0001.exr", "-o", "in/shot.0009.exr"}).exit_code, kDone);
+  int number = 0;
+  for (const int from : {1, 2, 9, 3, 9, 5, 6, 7}) frame(++number, from);
+  EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto"}), (Counts{1, 2, 3, 4, 5, 1, 2, 3}));
+  number = 0;
+  for (const int from : {9, 9, 1, 2, 3, 4, 9, 9}) frame(++number, from);
+  EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto"}), (Counts{1, 2, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto", "--frames", "4", "--pre-roll", "2"}), (Counts{2}));
+}
+
 TEST_F(CutsTest, AFrameThatCannotBeReadHidesNone) {
   make_truncated_exr("in/shot.0005.exr");
   fs::create_directory(path("out"));

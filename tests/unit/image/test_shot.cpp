@@ -136,20 +136,47 @@ TEST(Shot, DissolvesNoiseAndWhatEntersAreNoCuts) {
   }
 }
 
-TEST(Shot, FlatAndHardPicturesAreCompared) {
-  const auto flat = [](float value, int width = kWidth, int height = kHeight) {
-    Picture picture;
-    picture.color = Image(width, height, 4);
-    std::ranges::fill(picture.color.pixels, value);
-    return picture;
+Picture flat(float value, int width = kWidth, int height = kHeight) {
+  Picture picture;
+  picture.color = Image(width, height, 4);
+  std::ranges::fill(picture.color.pixels, value);
+  return picture;
+}
+
+/// Flashes, fades, black film with its grain: they are of the shot around them.
+TEST(Shot, WhatShowsNothingIsBlank) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> noise;
+  const auto grain = [&](float, int, int, int) { return 0.0009f * noise(random); };
+  const auto snow = [&](float, int, int, int) { return noise(random); };
+  EXPECT_TRUE(sketch_of({}).blank);
+  for (const float value : {0.f, 1.f, 1e30f}) EXPECT_TRUE(sketch_of(flat(value)).blank) << value;
+  EXPECT_TRUE(sketch_of(flat(1, 1, 1)).blank);
+  EXPECT_TRUE(sketch_of(changed(flat(0), grain)).blank);
+  EXPECT_TRUE(sketch_of(changed(flat(0), snow)).blank);
+  EXPECT_TRUE(sketch_of(changed(flat(1), [](float c, int, int y, int) { return y < 30 || y > 240 ? 0 : c; })).blank)
+      << "in a letterbox";
+  for (const Image& scene : scenes()) {
+    EXPECT_FALSE(sketch_of(view_of(scene, 0.5, 0.5)).blank);
+    EXPECT_FALSE(sketch_of(changed(view_of(scene, 0.5, 0.5), [](float c, int, int, int) { return c / 64; })).blank);
+  }
+}
+
+/// They are the same in all shots, and count for more than what is between them.
+TEST(Shot, BarsDoNotCount) {
+  const auto boxed = [](Picture picture) {
+    return changed(std::move(picture), [](float c, int x, int y, int) {
+      return y < kHeight / 8 || y >= kHeight * 7 / 8 || x < 20 ? 0.0001f : c;
+    });
   };
-  EXPECT_TRUE(follows(flat(0), flat(0)));
-  EXPECT_TRUE(follows(flat(0), flat(1)));
-  EXPECT_TRUE(follows(flat(1e30f, 1, 1), flat(0, 3, 1)));
-  EXPECT_TRUE(follows({}, flat(0)));
+  for (std::size_t a = 0; a < scenes().size(); ++a)
+    for (std::size_t b = 0; b < scenes().size(); ++b)
+      EXPECT_EQ(follows(boxed(view_of(scenes()[a], 0.5, 0.5)), boxed(view_of(scenes()[b], 0.52, 0.52))), a == b)
+          << a << " to " << b;
+}
+
+TEST(Shot, SparksAreNoPictures) {
   const Picture alley = view_of(scenes()[0], 0.5, 0.5);
-  EXPECT_FALSE(follows(flat(0), alley)) << "out of the black";
-  EXPECT_FALSE(follows(alley, flat(0)));
   Picture spark = alley, other_spark = alley;
   spark.color.at(20, 30)[1] = other_spark.color.at(400, 200)[0] = 1e30f;
   EXPECT_TRUE(follows(spark, other_spark)) << "pixels out of all bounds";
