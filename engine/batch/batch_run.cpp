@@ -198,7 +198,7 @@ Result<void> run_frames(BatchRun& run) {
   if (run.first && frames.size() > 1)
     if (auto good = loop.check_region(*run.first); !good) return named(std::move(good).error(), frames.front().job);
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));
-  if (earlier) loop.follow_histories();
+  if (earlier) loop.follow_histories(*earlier);
   if (earlier && takes_notes(run)) note_earlier_files(frames, asked.files, *earlier);
   AFTERGLOW_CHECK(prepare_notes(run));
   AFTERGLOW_CHECK(check_places(run));

@@ -166,14 +166,16 @@ bool FrameLoop::begins_shot(const Reading& reading) const {
   const FrameJob& job = reading.frame->job;
   if (options_.cuts.between(*last_, job.frame)) return true;
   if (!looks_for_cuts(job) || reading.sketch.blank) return false;
-  return last_sketch_.blank || !same_shot(last_sketch_, reading.sketch);
+  // What lies further back than the pre-roll must not count: a part of the sequence would not know of it.
+  const bool forgotten = blank_frames_ > 0 && blank_frames_ >= pre_roll_frames_;
+  return last_sketch_.blank || forgotten || !same_shot(last_sketch_, reading.sketch);
 }
 
 /// The next frame follows none.
 void FrameLoop::begin_shot() {
   last_.reset();
-  gaps_.clear();
   last_sketch_ = {};
+  blank_frames_ = 0;
 }
 
 /// What there was no room for.
@@ -293,13 +295,16 @@ std::size_t FrameLoop::ahead() const {
 /// From the picture that has been read to one that is in flight, and the oldest of those to one that is being written.
 Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
   FrameRecord& frame = *reading->frame;
-  if (reading->restart) begin_shot();
+  if (reading->restart) {
+    begin_shot();
+    gaps_.clear();
+  }
   if (reading->refused) return fail(frame, *reading->refused, reading->pre_roll);
   auto picture = reading->picture.get();
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
-  if (begins_shot(*reading)) {
+  frame.begins_shot = begins_shot(*reading);
+  if (frame.begins_shot) {
     begin_shot();
-    frame.begins_shot = true;
     events_.note(fmt::format("frame {} begins a shot: effects that look back begin anew", frame.job.frame));
   }
   if (auto placed = place_in_time(*reading); !placed)
@@ -345,6 +350,7 @@ Result<void> FrameLoop::finish_running() {
   if (options_.histories && last_ && !reading->request.restart)
     for (const auto& name : replaced) ++replaced_[name];
   last_ = frame.job.frame;
+  blank_frames_ = reading->sketch.blank ? blank_frames_ + 1 : 0;
   if (!reading->sketch.blank) last_sketch_ = std::move(reading->sketch);
   if (reading->pre_roll) {
     frame.state = FrameRecord::State::done;

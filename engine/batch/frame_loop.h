@@ -44,7 +44,10 @@ class FrameLoop {
   /// See FramePlanner: what the first picture refuses, all others would.
   Result<void> check_region(const PictureHeader& header) const { return planner_.check_region(header); }
   /// Pictures depend on the frames before them: see FrameLoopOptions.
-  void follow_histories() { options_.histories = true; }
+  void follow_histories(int pre_roll) {
+    options_.histories = true;
+    pre_roll_frames_ = pre_roll;
+  }
   /// Each frame gets its FrameJob::made_of. `notes` outlives the loop.
   void note_frames(FrameNotes& notes) { notes_ = &notes; }
   /// Pictures are those of a display's view: Picture::view.
@@ -103,6 +106,8 @@ class FrameLoop {
   std::map<std::string, int> replaced_;  ///< histories that began anew within a sequence, and in how many frames
   std::optional<int> last_;              ///< number of the frame that the next one follows
   ShotSketch last_sketch_;               ///< of the last picture of its shot that is not blank
+  int blank_frames_ = 0;                 ///< made behind that one
+  int pre_roll_frames_ = 0;              ///< that a part of a sequence runs first
   std::vector<std::size_t> gaps_;        ///< places of frames of its sequence that are not in its history: they failed
   std::optional<int> begun_;             ///< number of the frame that was evaluated last
   std::deque<SharedSkips> skips_;        ///< of frames so far, the newest first

@@ -12,20 +12,25 @@
 namespace afterglow {
 namespace {
 
-/// Whether frames that follow each other in a video show for lengths that differ by more than its clock rounds.
-bool varies(const std::vector<FrameJob>& frames) {
+/// A frame of a video whose frames show for lengths that differ by more than its clock rounds; null: there is none.
+const FrameJob* uneven(const std::vector<FrameJob>& frames) {
   constexpr double kSame = 0.05, kRoundings = 2;
   double shortest = INFINITY, longest = 0;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const FrameJob &before = frames[i - 1], &job = frames[i];
+    if (job.movie != before.movie) {
+      shortest = INFINITY;
+      longest = 0;
+    }
     if (!job.movie || job.passing || job.movie != before.movie || job.movie_frame != before.movie_frame + 1) continue;
     const auto& pts = job.movie->facts().pts;
     const auto at = static_cast<std::size_t>(job.movie_frame);
     const auto length = static_cast<double>(pts[at] - pts[at - 1]);
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
+    if (longest - shortest > std::max(kRoundings, kSame * longest)) return &job;
   }
-  return longest - shortest > std::max(kRoundings, kSame * longest);
+  return nullptr;
 }
 
 }  // namespace
@@ -40,11 +45,12 @@ void tell_of_own_times(double fps, const std::vector<FrameJob>& frames, Diagnost
 }
 
 void tell_of_lost_times(const std::string& output, const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
-  if (is_video_output(output) || !varies(frames)) return;
+  const FrameJob* const one = is_video_output(output) ? nullptr : uneven(frames);
+  if (!one) return;
   diagnostics.warn(fmt::format(
       "{}: its frames come at no even rate, which {} cannot say; .mp4, .mov and .mkv keep the times, and ffmpeg "
       "-fps_mode cfr makes the rate even before",
-      frames.front().input.string(), output == "-" ? "a stream" : "pictures"));
+      one->input.string(), output == "-" ? "a stream" : "pictures"));
 }
 
 }  // namespace afterglow

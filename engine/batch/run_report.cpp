@@ -119,7 +119,9 @@ std::string passes_text(const FrameRecord& frame) {
 std::string shots_text(const RunReport& report) {
   std::vector<int> frames;
   for (const auto& frame : report.frames)
-    if (frame.begins_shot) frames.push_back(frame.job.frame);
+    if (frame.begins_shot && frame.state == FrameRecord::State::done) frames.push_back(frame.job.frame);
+  std::ranges::sort(frames);
+  frames.erase(std::ranges::unique(frames).begin(), frames.end());
   return frames.empty() ? "" : fmt::format("shots begin at frames {}\n", frames_text(frames));
 }
 

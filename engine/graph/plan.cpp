@@ -33,6 +33,14 @@ bool must_be_drawn(const Graph& graph, ImageId image) {
   return image == graph.result || history_of_next(graph, image) != nullptr;
 }
 
+int param_bytes(const Graph& graph, const PlanKernel& kernel) {
+  int bytes = 0;
+  for (const int pass : kernel.passes)
+    for (const auto& [name, value] : graph.passes[static_cast<std::size_t>(pass)].params)
+      bytes += block_bytes(value.type, value.elements);
+  return bytes;
+}
+
 // Images that no frame changes, by the passes that make them: nothing of the source, of an auxiliary image or of a
 // frame before flows into them. Who runs the graph takes the result anew in every frame, and a history its next image.
 std::vector<bool> made_once(const Graph& graph) {
@@ -124,7 +132,8 @@ class Joiner {
         if (first(kernels_[feeder]).kind == PassKind::compute && must_be_drawn(graph_, kernel.output)) continue;
         PlanKernel both{kernel.passes, "", kernel.output};
         both.passes.insert(both.passes.end(), kernels_[feeder].passes.begin(), kernels_[feeder].passes.end());
-        if (both.passes.size() <= kMaxPassesPerKernel && bound_images(graph_, both) <= kMaxImagesPerKernel)
+        if (both.passes.size() <= kMaxPassesPerKernel && bound_images(graph_, both) <= kMaxImagesPerKernel &&
+            param_bytes(graph_, both) <= kMostParamBytes)
           return feeder;
       }
     return -1;

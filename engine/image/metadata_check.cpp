@@ -50,7 +50,10 @@ class Exif {
   /// By the index of the directory of interoperability, which lies in that of EXIF.
   bool says_adobe_rgb() const {
     constexpr std::uint32_t kDirectory = 0x8769, kInterop = 0xa005, kIndex = 1, kText = 2, kLong = 4;
+    constexpr std::uint32_t kSpace = 0xa001, kShort = 3, kSrgb = 1;
     const auto exif = entry_of(number(4, 4), kDirectory, kLong);
+    const auto space = exif ? entry_of(number(*exif + 8, 4), kSpace, kShort) : std::nullopt;
+    if (space && number(*space + 8, 2) == kSrgb) return false;
     const auto interop = exif ? entry_of(number(*exif + 8, 4), kInterop, kLong) : std::nullopt;
     const auto index = interop ? entry_of(number(*interop + 8, 4), kIndex, kText) : std::nullopt;
     return index && text_of(bytes_).substr(*index + 8, 3) == "R03";

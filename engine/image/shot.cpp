@@ -21,7 +21,7 @@ constexpr float kDarkest = 1e-6f;   // the same where there is no light
 constexpr float kBar = 0.01f, kBarNoise = 2e-4f;  // of the mean, and beside it, is what a black bar has at most
 constexpr int kBarEdge = 3;                       // cells beside it: a part of one, and two whose details see it
 constexpr double kBlank = 0.2;                    // stops by which what shows nothing varies
-constexpr float kOtherLevel = 1;                  // stops; with other details it is another place
+constexpr double kOtherLevel = 1;                 // stops; with other details it is another place
 constexpr double kToneNoise = 0.05, kDetailNoise = 0.02;  // stops
 constexpr double kTonesAlike = 0.75, kDetailsAlike = 0.4;
 
@@ -221,6 +221,21 @@ bool alike(const std::vector<float>& a, const std::vector<float>& b, const Plane
   return false;
 }
 
+/// Whether the tones of a channel are others by far, on the whole.
+bool other_level(const ShotSketch& before, const ShotSketch& now, const Inside& inside) {
+  for (int channel = 0; channel < kTones.channels; ++channel) {
+    double sum = 0, count = 0;
+    for (int row = inside.top; row < inside.bottom; ++row)
+      for (int x = inside.left; x < inside.right; ++x) {
+        const auto at = static_cast<std::size_t>((channel * kTonesHigh + row) * kTonesWide + x);
+        sum += now.tones[at] - before.tones[at];
+        ++count;
+      }
+    if (std::abs(sum) > kOtherLevel * count) return true;
+  }
+  return false;
+}
+
 /// By how much the numbers of a plane vary within the bars, root mean square.
 double variation(const std::vector<float>& numbers, const Plane& plane, const ShotSketch::Bars& bars) {
   const Inside inside = inside_of(plane, bars);
@@ -244,19 +259,15 @@ ShotSketch sketch_of(const Picture& picture) {
   if (picture.color.width <= 0 || picture.color.height <= 0) return {};
   Cells cells = cells_of(picture);
   hold_sparks(cells);
-  ShotSketch out{.tones = tones_of(cells), .details = details_of(cells), .levels = {}, .bars = bars_of(cells)};
-  constexpr std::size_t kPlane = kTonesWide * kTonesHigh;
-  for (std::size_t i = 0; i < out.tones.size(); ++i) out.levels[i / kPlane] += out.tones[i] / kPlane;
+  ShotSketch out{.tones = tones_of(cells), .details = details_of(cells), .bars = bars_of(cells)};
   out.blank = variation(out.tones, kTones, out.bars) < kBlank && variation(out.details, kDetails, out.bars) < kBlank;
   return out;
 }
 
 bool same_shot(const ShotSketch& before, const ShotSketch& now) {
   const ShotSketch::Bars bars = common(before.bars, now.bars);
-  bool other_level = false;
-  for (std::size_t i = 0; i < now.levels.size(); ++i)
-    other_level = other_level || std::abs(now.levels[i] - before.levels[i]) > kOtherLevel;
-  return (!other_level && alike(before.tones, now.tones, kTones, bars, kTonesAlike)) ||
+  return (!other_level(before, now, inside_of(kTones, bars)) &&
+          alike(before.tones, now.tones, kTones, bars, kTonesAlike)) ||
          alike(before.details, now.details, kDetails, bars, kDetailsAlike);
 }
 

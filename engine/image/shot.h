@@ -2,7 +2,6 @@
 // Whether two pictures are of one shot, by what is seen in them (docs/math.md, 54).
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "image/picture.h"
@@ -11,9 +10,8 @@ namespace afterglow {
 
 /// A picture so small that it is quickly compared.
 struct ShotSketch {
-  std::vector<float> tones;     ///< 32 × 18 cells, three channels in stops
-  std::vector<float> details;   ///< 64 × 36 cells, how many stops each is brighter than those around it
-  std::array<float, 3> levels;  ///< means of the channels' tones
+  std::vector<float> tones;    ///< 32 × 18 cells, three channels in stops
+  std::vector<float> details;  ///< 64 × 36 cells, how many stops each is brighter than those around it
   /// Rows and columns of those 64 × 36 at the borders that are black: a letterbox.
   struct Bars {
     int left = 0, right = 0, top = 0, bottom = 0;

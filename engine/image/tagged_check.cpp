@@ -161,7 +161,7 @@ Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, st
     if (page == 0 && (said.contains(kDng) || (small && said.contains(kInner))))
       return malformed(file, "is a camera raw, which has to be developed first; take the TIFF or EXR made of it");
     // Then a sample is one bit, and the reader takes it for eight.
-    if (entries > 0 && !said.contains(kBits))
+    if (page == 0 && entries > 0 && !said.contains(kBits))
       return malformed(file, "does not say how many bits a sample has (BitsPerSample), which the reader needs");
     if (table.size() < entries * entry + wide) break;
     at = number(&table[entries * entry], wide);

@@ -31,6 +31,12 @@ bool has_histories(LiveSession* session) {
   return stack && stack->build() && !stack->build()->graph.histories.empty();
 }
 
+/// The same of the frame that runs next: without a build yet nobody knows.
+bool may_look_back(LiveSession* session) {
+  Stack* const stack = session ? session->live().stack() : nullptr;
+  return !stack || !stack->build() || has_histories(session);
+}
+
 }  // namespace
 
 void Player::State::wake() {
@@ -242,7 +248,7 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   // Effects that look back go on over frames that were dropped; after a jump they begin anew.
   if (transport.playing() && ran && due.tick > ran->tick && frame.frame > ran->number)
     frame.step = frame.frame - ran->number;
-  const bool looks_back = has_histories(first.get()) || (compare && has_histories(second.get()));
+  const bool looks_back = may_look_back(first.get()) || (compare && may_look_back(second.get()));
   if (looks_back && shots.begins(*footage, due.position, read->picture)) {
     frame.restart = true;
     frame.step = 1;

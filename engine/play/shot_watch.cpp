@@ -6,7 +6,7 @@ namespace afterglow {
 bool ShotWatch::begins(const Footage& footage, int position, const Picture& picture) {
   const FootageFrame& frame = footage.frame(position);
   const Footage::Clip& clip = footage.clips()[static_cast<std::size_t>(footage.clip_at(position))];
-  Frame asked{.clip = clip.key, .number = frame.number};
+  Frame asked{.clip = clip.key, .place = frame.number, .number = frame.number};
   const bool looks = cuts_.looks(footage.movie(frame.picture) != nullptr);
   if (looks) asked.sketch = sketch_of(picture);
   const bool blank = asked.sketch.blank;
@@ -14,8 +14,11 @@ bool ShotWatch::begins(const Footage& footage, int position, const Picture& pict
     asked.begins = false;
   } else if (shown_->clip != clip.key) {
     asked.begins = true;
-  } else if (shown_->number == frame.number) {
+  } else if (shown_->place == frame.number) {
+    asked.number = shown_->number;
     asked.begins = shown_->begins;
+  } else if (frame.held) {
+    asked.number = shown_->number;
   } else {
     const ShotSketch& before = shown_->sketch;
     asked.begins = cuts_.between(shown_->number, frame.number) ||

@@ -18,13 +18,12 @@ class ShotWatch {
   bool begins(const Footage& footage, int position, const Picture& picture);
   /// The frame that was asked for last is on screen now.
   void shown() { shown_ = asked_; }
-  /// What is played is other footage now.
-  void forget() { shown_ = asked_ = {}; }
 
  private:
   struct Frame {
     std::string clip;
-    int number = 0;
+    int place = 0;      ///< its number in the clip
+    int number = 0;     ///< that of the picture, where a missing one is held
     ShotSketch sketch;  ///< of the last picture of its shot that is not blank
     bool begins = false;
   };

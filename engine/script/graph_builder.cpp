@@ -324,10 +324,11 @@ void GraphBuilder::bind_param(Pass& pass, const Argument& argument, const Shader
     v.assign(value.list.begin(), value.list.begin() + value.count);
   }
   const bool integer = param.type == ParamType::int1 || param.type == ParamType::int2;
-  for (const double number : v) {
-    if (!std::isfinite(static_cast<float>(number))) wrong("not finite");
-    if (integer && number != std::floor(number)) wrong("not an integer");
-    if (integer && std::abs(number) > std::numeric_limits<int>::max()) wrong("no integer of 32 bits");
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::string at = v.size() > 4 ? fmt::format(": number {} of it", i + 1) : "";
+    if (!std::isfinite(static_cast<float>(v[i]))) wrong("not finite" + at);
+    if (integer && v[i] != std::floor(v[i])) wrong("not an integer" + at);
+    if (integer && std::abs(v[i]) > std::numeric_limits<int>::max()) wrong("no integer of 32 bits" + at);
   }
   if (param.specialised)
     pass.constants[param.name] = v.front();
@@ -341,7 +342,8 @@ std::vector<double> GraphBuilder::rows_for(const Argument& argument, const Shade
   const auto side = static_cast<std::size_t>(matrix_side(param.type));
   const auto components = static_cast<std::size_t>(component_count(param.type));
   const Numbers& given = argument.numbers;
-  if (argument.image || given.rows == 0) wrong(side > 0 ? "no matrix" : "no array");
+  const std::string what = side > 0 ? "no matrix" : "no array";
+  if (argument.image || given.rows == 0) wrong(given.fault.empty() ? what : what + ": it " + given.fault);
   const std::size_t columns = side > 0 ? side : components == 1 ? 0 : components;
   if (given.columns != columns) wrong(side > 0 ? "a matrix of another size" : "an array of other elements");
   if (side > 0) {

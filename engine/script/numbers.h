@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "script/lua.h"
@@ -14,10 +15,11 @@ struct Numbers {
   std::size_t rows = 0;     ///< 0: it is no such table
   std::size_t columns = 0;  ///< of each row; 0: each is a number, and no table
   std::vector<double> values;
+  std::string fault;  ///< why it is none: "has a table of 2 at 3, and a table of 3 before"
 };
 
-/// Of a table in which all rows are alike and have four numbers at most. Of a longer one than `most` rows the
-/// beginning, one row more than that, so that whoever takes it can tell.
+/// Of a table in which all rows are alike and have four numbers at most, and which has no other keys than 1, 2, ….
+/// Of a longer one than `most` rows the beginning, one row more than that, so that whoever takes it can tell.
 Numbers read_numbers(lua_State* lua, int index, std::size_t most);
 
 }  // namespace afterglow::script

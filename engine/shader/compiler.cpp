@@ -101,7 +101,6 @@ struct KernelCompiler::State {
 
 namespace {
 
-/// Compares what the compiler made with what the assembler promised; a difference is a fault of the engine.
 /// Whether that is where the parameter's bytes go.
 bool is_of(const Reflection::Member& member, const KernelParam& param) {
   const int side = matrix_side(param.type);
@@ -111,6 +110,7 @@ bool is_of(const Reflection::Member& member, const KernelParam& param) {
          member.elements == static_cast<std::uint32_t>(param.elements);
 }
 
+/// Compares what the compiler made with what the assembler promised; a difference is a fault of the engine.
 Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& desc) {
   constexpr int kTogether = 4;  // rows: more of them would not fit into a processor's registers
   KernelFile kernel;

@@ -61,6 +61,11 @@ int component_count(ParamType type) { return info_of(type).components; }
 int matrix_side(ParamType type) { return info_of(type).side; }
 const char* glsl_name(ParamType type) { return info_of(type).glsl; }
 
+int block_bytes(ParamType type, int elements) {
+  constexpr int kVector = 16;
+  return kVector * std::max(matrix_side(type), 1) * std::max(elements, 1);
+}
+
 std::optional<ParamType> param_type_of(std::string_view glsl_name) {
   for (const auto& info : kParamTypes)
     if (glsl_name == info.glsl) return info.type;

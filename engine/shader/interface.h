@@ -70,6 +70,10 @@ int component_count(ParamType type);
 /// Rows and columns of a matrix; 0 of the others.
 int matrix_side(ParamType type);
 const char* glsl_name(ParamType type);
+/// Of a kernel's uniform block, at most.
+int block_bytes(ParamType type, int elements);
+/// What all parameters of a kernel may take: as much as every Vulkan device has room for.
+inline constexpr int kMostParamBytes = 16384;
 std::optional<ParamType> param_type_of(std::string_view glsl_name);
 /// What a `uniform` may be of, for messages.
 const std::vector<std::string>& uniform_types();

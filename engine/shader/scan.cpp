@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/text.h"
+#include "shader/array_size.h"
 #include "shader/builtins.h"
 #include "shader/directives.h"
 #include "shader/entry_point.h"
@@ -239,14 +240,16 @@ class ShaderScanner {
     if (!param || matrix_side(*param) > 0 || *param == ParamType::bool1)
       return fail(name,
                   fmt::format("'{}': arrays of this type are not supported; declare each by its name", name.text));
-    const auto elements = literal_value(token(1), ParamType::int1);
+    const auto elements = array_size(out_.tokens, token(1));
     if (!elements || *elements < 1 || *elements > kMostElements || !token(2).is("]") || token(3).is("[")) {
-      Error error = fail(name, fmt::format("'{}': the number of elements is one whole number", name.text));
+      Error error = fail(name, fmt::format("'{}': the number of elements is a whole number, or a name that #define or "
+                                           "const int gives one",
+                                           name.text));
       error.allowed = fmt::format("1 to {}", kMostElements);
       return error;
     }
     at_ += 3;
-    return static_cast<int>(*elements);
+    return *elements;
   }
 
   /// `layout(local_size_x = N, …) in;`, at `in`.
@@ -436,6 +439,11 @@ class ShaderScanner {
     if (!input_names_.insert(param.name).second) return fail(name, fmt::format("'{}' is declared twice", name.text));
     if (out_.interface.params.size() >= kMaxParams)
       return fail(name, fmt::format("a shader has at most {} parameters", kMaxParams));
+    param_bytes_ += param.specialised ? 0 : block_bytes(param.type, param.elements);
+    if (param_bytes_ > kMostParamBytes)
+      return fail(name, fmt::format("the parameters of a shader take more than {} bytes, of which each number, vector, "
+                                    "column of a matrix and element takes 16",
+                                    kMostParamBytes));
     out_.interface.params.push_back(std::move(param));
     return add_name(name, false);
   }
@@ -463,6 +471,7 @@ class ShaderScanner {
   std::size_t at_ = 0;              ///< index into code_
   std::size_t begin_ = 0;           ///< where the declaration begins
   std::set<std::string> constant_ids_, input_names_, seen_;
+  int param_bytes_ = 0;
   std::optional<int> entry_line_, workgroup_line_, done_line_;
 };
 

@@ -124,6 +124,12 @@ TEST_F(CutsTest, BlackIsNoShot) {
   for (const int from : {9, 9, 1, 2, 3, 4, 9, 9}) frame(++number, from);
   EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto"}), (Counts{1, 2, 1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto", "--frames", "4", "--pre-roll", "2"}), (Counts{2}));
+  // Light behind more black frames than the pre-roll is a shot of its own, whatever was before: as in a part.
+  number = 0;
+  for (const int from : {1, 2, 9, 9, 3, 9, 4, 4}) frame(++number, from);
+  EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto", "--pre-roll", "2"}), (Counts{1, 2, 3, 4, 1, 2, 3, 4}));
+  EXPECT_EQ(counts("cut/shot.####.exr", {"--cuts", "auto", "--pre-roll", "2", "--frames", "5-8"}),
+            (Counts{1, 2, 3, 4}));
 }
 
 TEST_F(CutsTest, AFrameThatCannotBeReadHidesNone) {
@@ -133,6 +139,24 @@ TEST_F(CutsTest, AFrameThatCannotBeReadHidesNone) {
   EXPECT_EQ(std::lround(16 * pixels_of("out/o.0006.exr").at(0)), 1);
   EXPECT_EQ(run({"run", "count.lua", "in/shot.####.exr", "-o", "out/o.####.exr", "--cuts", "5"}).exit_code, kFiles);
   EXPECT_EQ(std::lround(16 * pixels_of("out/o.0006.exr").at(0)), 1);
+}
+
+/// Those behind it are made again, too.
+TEST_F(CutsTest, AFrameThatFailedAtACutIsMadeUpFor) {
+  fs::create_directory(path("out"));
+  const std::string good = read("in/shot.0004.exr");
+  const std::vector<std::string> words{"run",    "count.lua", "in/shot.####.exr", "-o", "out/o.####.exr",
+                                       "--cuts", "4",         "--resume"};
+  const auto time = fs::last_write_time(path("in/shot.0004.exr"));
+  write("in/shot.0004.exr", std::string(good.size(), '\0'));
+  fs::last_write_time(path("in/shot.0004.exr"), time);
+  ASSERT_EQ(run(words).exit_code, kFiles);
+  EXPECT_EQ(std::lround(16 * pixels_of("out/o.0005.exr").at(0)), 1);
+  write("in/shot.0004.exr", good);
+  fs::last_write_time(path("in/shot.0004.exr"), time);
+  ASSERT_EQ(run(words).exit_code, kDone);
+  EXPECT_EQ(std::lround(16 * pixels_of("out/o.0004.exr").at(0)), 1);
+  EXPECT_EQ(std::lround(16 * pixels_of("out/o.0008.exr").at(0)), 5);
 }
 
 /// Pixels depend on them.

@@ -291,5 +291,17 @@ TEST(Plan, HoldsOnRandomGraphs) {
   }
 }
 
+/// The least uniform block that a device has holds 16 KiB.
+TEST(Plan, ParametersOfAKernelFitIntoEveryDevice) {
+  Builder b;
+  ImageId image = b.graph.source;
+  for (const char* name : {"a", "b", "c", "d", "e"}) {
+    image = b.pixel(name, image);
+    b.graph.passes.back().params["all"] = {ParamType::float4, std::vector<double>(4 * 256), 256};  // 4 KiB
+  }
+  const Plan plan = make_plan(b.graph, {});
+  EXPECT_EQ(names(plan), (Names{"test.a", "test.b+test.c+test.d+test.e"}));
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -53,14 +53,14 @@ class Bytes {
 };
 
 /// EXIF as cameras write it, with that index of interoperability.
-std::string exif(bool big, const char* index, std::uint32_t orientation = 1) {
-  constexpr std::uint32_t kFirst = 8, kLength = 2 + 2 * 12 + 4, kInner = 2 + 12 + 4;
+std::string exif(bool big, const char* index, std::uint32_t orientation = 1, std::uint32_t space = 0xffff) {
+  constexpr std::uint32_t kFirst = 8, kLength = 2 + 2 * 12 + 4, kInner = 2 + 2 * 12 + 4;
   Bytes out(big);
   out.put(big ? "MM" : "II");
   out.put(42, 2);
   out.put(kFirst, 4);
   out.directory({{0x0112, 3, 1, orientation}, {0x8769, 4, 1, kFirst + kLength}});
-  out.directory({{0xa005, 4, 1, kFirst + kLength + kInner}});
+  out.directory({{0xa001, 3, 1, space}, {0xa005, 4, 1, kFirst + kLength + kInner}});
   std::uint32_t text = 0;
   for (int i = 0; i < 4; ++i)
     text |= static_cast<std::uint32_t>(static_cast<unsigned char>(index[i])) << 8 * (big ? 3 - i : i);
@@ -130,6 +130,11 @@ TEST_F(Photographs, AreAdobeRgbWhereExifSaysSo) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(adobe.color.at(3, 2)[c], want[c], 2e-5) << c;
     EXPECT_LT(adobe.color.at(3, 2)[0], 0) << "it is seen to be another green";
   }
+}
+
+TEST_F(Photographs, AreSrgbWhereExifSaysThatToo) {
+  const float plain = read_or_fail(jpeg("plain.jpg", exif(false, "R98"))).color.at(0, 0)[1];
+  EXPECT_EQ(read_or_fail(jpeg("both.jpg", exif(false, "R03", 1, 1))).color.at(0, 0)[1], plain);
 }
 
 TEST_F(Photographs, ExifThatEndsEarlyOrLeadsAstraySaysNothing) {

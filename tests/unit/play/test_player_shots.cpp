@@ -86,6 +86,24 @@ TEST_F(PlayerShots, BeginAnewWhereTheyAreToldTo) {
   EXPECT_FLOAT_EQ(result(), 1) << "the cut was dropped";
 }
 
+TEST_F(PlayerShots, BeginAnewAtTheSecondFrame) {
+  write_sequence(3);
+  PlayerOptions options;
+  options.footage.cuts = {.by = Cuts::By::frames, .frames = {2}};
+  EXPECT_EQ(played(open(options), 3), (std::vector<float>{1, 1, 2}));
+  options.footage.cuts = {.by = Cuts::By::each};
+  EXPECT_EQ(played(open(options), 3), (std::vector<float>{1, 1, 1}));
+}
+
+/// What is held in the place of a missing frame is of the shot before.
+TEST_F(PlayerShots, AMissingFrameBeginsNone) {
+  write_sequence(6);
+  fs::remove(path("s.3.exr"));
+  PlayerOptions options;
+  options.footage.cuts = {.by = Cuts::By::frames, .frames = {3}};
+  EXPECT_EQ(played(open(options), 6), (std::vector<float>{1, 2, 3, 1, 2, 3}));
+}
+
 TEST_F(PlayerShots, AreSeenInThePictures) {
   for (int frame = 1; frame <= 6; ++frame) write_ramp(frame, frame > 3);
   PlayerOptions options;

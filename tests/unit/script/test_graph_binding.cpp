@@ -293,7 +293,14 @@ TEST_F(Binding, WhatIsNoMatrixOrArrayIsToldSo) {
   EXPECT_THAT(error("1", colors, order), HasSubstr("turn = 1 is no matrix; allowed: 2 rows, each { 2 numbers }"));
   EXPECT_THAT(error("{ 1, 0, 0, 1 }", colors, order), HasSubstr("turn = {1, 0, 0, 1} is a matrix of another size"));
   EXPECT_THAT(error("{ { 1, 0 } }", colors, order), HasSubstr("is a matrix of another size"));
-  EXPECT_THAT(error("{ { 1, 0 }, { 0 } }", colors, order), HasSubstr("is no matrix"));
+  EXPECT_THAT(error("{ { 1, 0 }, { 0 } }", colors, order),
+              HasSubstr("turn = a table is no matrix: it has a table of 1 at 2, and a table of 2 before"));
+  EXPECT_THAT(error(turn, "{ { 1, 2, 3 }, { 1, 2 } }", order),
+              HasSubstr("colors = a table is no array: it has a table of 2 at 2, and a table of 3 before"));
+  EXPECT_THAT(error(turn, colors, "{ [0] = 1, 1 }"), HasSubstr("order = {1} is no array: it has the key 0"));
+  EXPECT_THAT(error(turn, colors, "{ 1, x = 2 }"), HasSubstr("it has the key \"x\"; keys are 1, 2"));
+  EXPECT_THAT(error(turn, colors, "{ 1, 'two' }"), HasSubstr("it has \"two\" at 2"));
+  EXPECT_THAT(error(turn, colors, "{ 1, nil, 2 }"), HasSubstr("order = "));
   EXPECT_THAT(error("{ { 1, 0 }, { 0, 0/0 } }", colors, order), HasSubstr("turn = a table is not finite"));
   EXPECT_THAT(error(turn, "{}", order), HasSubstr("is no array; allowed: a table of 1 to 2, each { 3 numbers }"));
   EXPECT_THAT(error(turn, "{ 1, 2 }", order), HasSubstr("colors = {1, 2} is an array of other elements"));

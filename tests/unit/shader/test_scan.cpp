@@ -194,6 +194,19 @@ TEST(Scan, PrototypesOfEntryPointsAreNotDefinitions) {
   EXPECT_EQ(scanned("vec4 apply(vec4 c);\nvec4 apply(vec4 c, vec4 high) { return c; }\n").interface.inputs.size(), 1u);
 }
 
+TEST(Scan, ArraysOfParameters) {
+  const ShaderScan scan = scanned(
+      "#define MANY 9\nconst int few = 3;\nuniform float w[MANY], one, v [ few ];\nuniform vec2 p[0x10];\n"
+      "uniform mat3 turn;\nvec4 apply(vec4 color) { return color * w[2]; }\n");
+  const auto& params = scan.interface.params;
+  ASSERT_EQ(params.size(), 5u);
+  EXPECT_EQ(params[0].elements, 9);
+  EXPECT_EQ(params[1].elements, 0);
+  EXPECT_EQ(params[2].elements, 3);
+  EXPECT_EQ(params[3].elements, 16);
+  EXPECT_EQ(params[4].type, ParamType::matrix3);
+}
+
 struct Bad {
   std::string text;
   int line;
@@ -220,12 +233,16 @@ const std::string kEnd = kOwnPixel;
 INSTANTIATE_TEST_SUITE_P(
     Declarations, ScanErrors,
     testing::Values(
+        Bad{"uniform vec4 a[256], b[256];\nuniform vec4 c[256], d[256], e;\n" + kEnd, 2, "take more than 16384 bytes"},
+        Bad{"#ifdef X\n#define N 4\n#else\n#define N 8\n#endif\nuniform float a[N];\n" + kEnd, 6,
+            "a whole number, or a name"},
         Bad{"uniform float[2] a;\n" + kEnd, 1, "stands behind the name: uniform float NAME[N];"},
-        Bad{"\nuniform float a[0];\n" + kEnd, 2, "'a': the number of elements is one whole number", "1 to 256"},
-        Bad{"uniform float a[257];\n" + kEnd, 1, "the number of elements is one whole number", "1 to 256"},
-        Bad{"uniform float a[N];\n" + kEnd, 1, "the number of elements is one whole number", "1 to 256"},
-        Bad{"uniform float a[2][2];\n" + kEnd, 1, "the number of elements is one whole number", "1 to 256"},
-        Bad{"uniform float a[];\n" + kEnd, 1, "the number of elements is one whole number", "1 to 256"},
+        Bad{"\nuniform float a[0];\n" + kEnd, 2, "'a': the number of elements is a whole number, or a name",
+            "1 to 256"},
+        Bad{"uniform float a[257];\n" + kEnd, 1, "the number of elements is a whole number, or a name", "1 to 256"},
+        Bad{"uniform float a[N];\n" + kEnd, 1, "the number of elements is a whole number, or a name", "1 to 256"},
+        Bad{"uniform float a[2][2];\n" + kEnd, 1, "the number of elements is a whole number, or a name", "1 to 256"},
+        Bad{"uniform float a[];\n" + kEnd, 1, "the number of elements is a whole number, or a name", "1 to 256"},
         Bad{"uniform float a[2;\n" + kEnd, 1, "'[' is never closed"},
         Bad{"uniform bool a[4];\n" + kEnd, 1, "'a': arrays of this type"},
         Bad{"uniform mat3 a[4];\n" + kEnd, 1, "'a': arrays of this type"},
