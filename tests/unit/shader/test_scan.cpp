@@ -234,8 +234,7 @@ INSTANTIATE_TEST_SUITE_P(
     Declarations, ScanErrors,
     testing::Values(
         Bad{"uniform vec4 a[256], b[256];\nuniform vec4 c[256], d[256], e;\n" + kEnd, 2, "take more than 16384 bytes"},
-        Bad{"#ifdef X\n#define N 4\n#else\n#define N 8\n#endif\nuniform float a[N];\n" + kEnd, 6,
-            "a whole number, or a name"},
+        Bad{"#define N 4\n#undef N\n#define N 8\nuniform float a[N];\n" + kEnd, 4, "a whole number, or a name"},
         Bad{"uniform float[2] a;\n" + kEnd, 1, "stands behind the name: uniform float NAME[N];"},
         Bad{"\nuniform float a[0];\n" + kEnd, 2, "'a': the number of elements is a whole number, or a name",
             "1 to 256"},
