@@ -2,7 +2,6 @@
 #include "image/ffmpeg_opus_delay.h"
 
 #include <cstring>
-#include <string>
 #include <string_view>
 
 #include "image/ffmpeg_log.h"

@@ -5,7 +5,6 @@ extern "C" {
 #include <libavutil/channel_layout.h>
 #include <libavutil/mathematics.h>
 #include <libavutil/opt.h>
-#include <libswresample/swresample.h>
 }
 
 #include <algorithm>
@@ -18,6 +17,7 @@ extern "C" {
 
 #include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_input.h"
+#include "image/ffmpeg_samples.h"
 
 namespace afterglow {
 namespace {
@@ -38,13 +38,6 @@ constexpr const char* kCodecs =
     "aac,mp3,mp3float,mp2,mp2float,mp1,mp1float,opus,libopus,vorbis,libvorbis,flac,alac,ac3,eac3,wavpack,tta,"
     "pcm_s8,pcm_u8,pcm_s16le,pcm_s16be,pcm_s24le,pcm_s24be,pcm_s32le,pcm_s32be,pcm_f32le,pcm_f32be,pcm_f64le,"
     "pcm_f64be,pcm_alaw,pcm_mulaw,pcm_bluray,pcm_dvd,adpcm_ima_wav,adpcm_ms,wmav1,wmav2,dvaudio";
-
-struct SwrDeleter {
-  void operator()(SwrContext* converter) const { swr_free(&converter); }
-};
-
-/// Files of floats hold anything.
-float held_sample(float sample) { return std::isnan(sample) ? 0 : std::clamp(sample, -1.0f, 1.0f); }
 
 /// Negative: there is none. MPEG streams tell of rates in the sound itself, which was passed over while the pictures
 /// were looked for: there is no best one then, and decoders find out the rest.
@@ -105,7 +98,7 @@ class FfmpegSound : public SoundTrack {
     const std::int64_t from = std::max(first, held_), until = std::min(first + count, end());
     if (from < until)
       std::transform(samples_.begin() + (from - held_) * kChannels, samples_.begin() + (until - held_) * kChannels,
-                     to.begin() + (from - first) * kChannels, held_sample);
+                     to.begin() + (from - first) * kChannels, held_sample<float>);
     drop_before(first);
     if (auto reason = input_->given_up()) return *std::move(reason);
     return {};
@@ -216,20 +209,9 @@ class FfmpegSound : public SoundTrack {
     const bool same =
         converter_ && frame.sample_rate == rate_ && frame.format == format_ && frame.ch_layout.nb_channels == channels_;
     if (same) return true;
-    AVChannelLayout stereo = AV_CHANNEL_LAYOUT_STEREO, given{};
-    if (frame.ch_layout.order == AV_CHANNEL_ORDER_UNSPEC)
-      av_channel_layout_default(&given, frame.ch_layout.nb_channels);
-    else if (av_channel_layout_copy(&given, &frame.ch_layout) < 0)
-      return false;
-    SwrContext* made = nullptr;
-    const int set = swr_alloc_set_opts2(&made, &stereo, AV_SAMPLE_FMT_FLT, static_cast<int>(kRate), &given,
-                                        static_cast<AVSampleFormat>(frame.format), frame.sample_rate, 0, nullptr);
-    av_channel_layout_uninit(&given);
-    converter_.reset(made);
-    if (set < 0 || swr_init(made) < 0) {
-      converter_.reset();
-      return false;
-    }
+    const AVChannelLayout stereo = AV_CHANNEL_LAYOUT_STEREO;
+    converter_ = converter_between(frame, frame.ch_layout, stereo, AV_SAMPLE_FMT_FLT, static_cast<int>(kRate));
+    if (!converter_) return false;
     rate_ = frame.sample_rate;
     format_ = frame.format;
     channels_ = frame.ch_layout.nb_channels;
@@ -279,7 +261,7 @@ class FfmpegSound : public SoundTrack {
   CodecHandle codec_;
   PacketHandle packet_;
   FrameHandle frame_;
-  std::unique_ptr<SwrContext, SwrDeleter> converter_;
+  SwrHandle converter_;
   int rate_ = 0, format_ = -1, channels_ = 0;
   double start_ = 0;
   std::vector<ClockPart> clock_;  ///< where the file's starts anew

@@ -14,6 +14,7 @@ extern "C" {
 
 #include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_log.h"
+#include "image/ffmpeg_samples.h"
 #include "image/ffmpeg_sound.h"
 
 namespace afterglow {
@@ -58,13 +59,6 @@ int rate_for(const Target& target, int rate) {
   const bool kept =
       target.any_rate || (std::string_view(target.encoder) == "aac" && std::ranges::find(kOfAac, rate) != kOfAac.end());
   return kept ? rate : kEncodedRate;
-}
-
-/// The usual one for so many channels, where the file says none.
-int known_layout(AVChannelLayout& to, const AVChannelLayout& from) {
-  if (from.order != AV_CHANNEL_ORDER_UNSPEC) return av_channel_layout_copy(&to, &from);
-  av_channel_layout_default(&to, from.nb_channels);
-  return 0;
 }
 
 CodecHandle open_sound_decoder(const AVStream& from) {
@@ -157,25 +151,18 @@ bool FfmpegSoundEncoder::fits(const AVFrame& frame) {
   const bool same =
       converter_ && frame.sample_rate == rate_ && frame.format == format_ && frame.ch_layout.nb_channels == channels_;
   if (same) return true;
-  AVChannelLayout given{};
-  if (known_layout(given, frame.ch_layout) < 0) return false;
-  SwrContext* made = nullptr;
-  const int set = swr_alloc_set_opts2(&made, &encoder_->ch_layout, encoder_->sample_fmt, encoder_->sample_rate, &given,
-                                      static_cast<AVSampleFormat>(frame.format), frame.sample_rate, 0, nullptr);
-  av_channel_layout_uninit(&given);
-  converter_.reset(made);
-  if (set < 0 || swr_init(made) < 0) {
-    converter_.reset();
-    return false;
-  }
+  converter_ =
+      converter_between(frame, frame.ch_layout, encoder_->ch_layout, encoder_->sample_fmt, encoder_->sample_rate);
+  if (!converter_) return false;
   rate_ = frame.sample_rate;
   format_ = frame.format;
   channels_ = frame.ch_layout.nb_channels;
   return true;
 }
 
-Result<void> FfmpegSoundEncoder::take(const AVFrame& frame) {
+Result<void> FfmpegSoundEncoder::take(AVFrame& frame) {
   if (frame.sample_rate < 1 || !fits(frame)) return {};
+  if (!hold_samples(frame)) return no_sound_memory();
   AFTERGLOW_CHECK(place(frame));
   return convert_samples(&frame);
 }

@@ -4,7 +4,6 @@
 
 extern "C" {
 #include <libavutil/audio_fifo.h>
-#include <libswresample/swresample.h>
 }
 
 #include <cstdint>
@@ -13,6 +12,7 @@ extern "C" {
 
 #include "core/result.h"
 #include "image/ffmpeg_handles.h"
+#include "image/ffmpeg_samples.h"
 
 namespace afterglow {
 
@@ -36,13 +36,12 @@ class FfmpegSoundEncoder {
 
  private:
   struct Deleter {
-    void operator()(SwrContext* converter) const { swr_free(&converter); }
     void operator()(AVAudioFifo* samples) const { av_audio_fifo_free(samples); }
   };
 
   FfmpegSoundEncoder() = default;
   Result<void> decode(const AVPacket* packet);
-  Result<void> take(const AVFrame& frame);
+  Result<void> take(AVFrame& frame);
   Result<void> place(const AVFrame& frame);
   bool fits(const AVFrame& frame);
   Result<void> add(const AVFrame& samples, std::int64_t count);
@@ -54,7 +53,7 @@ class FfmpegSoundEncoder {
 
   CodecHandle decoder_, encoder_;
   FrameHandle frame_;
-  std::unique_ptr<SwrContext, Deleter> converter_;
+  SwrHandle converter_;
   int rate_ = 0, format_ = -1, channels_ = 0;      ///< that it converts from
   std::unique_ptr<AVAudioFifo, Deleter> waiting_;  ///< for the encoder
   std::int64_t begin_ = 0;                         ///< microseconds of the stream's clock

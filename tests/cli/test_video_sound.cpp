@@ -142,6 +142,19 @@ TEST_F(VideoSound, HolesAreSilent) {
   }
 }
 
+/// Files of floats hold anything, and encoders refuse it.
+TEST_F(VideoSound, WhatIsNoSoundIsSilentOrHeld) {
+  for (const std::string wrong : {"0/0", "1/0", "-1/0", "1e30", "-1e30"})
+    for (const std::string kind : {"pcm_f32le", "pcm_f64le"}) {
+      make("in.mkv", "-f lavfi -i \"aevalsrc='if(eq(n\\,40000)\\," + wrong + "\\,0.5*sin(n/20))':s=44100:d=3\" ",
+           "-c:v ffv1 -c:a " + kind);
+      for (const std::string to : {"out.mp4", "out.webm"}) {
+        encoded("in.mkv", to);
+        EXPECT_NEAR(std::stod(probe(to, "-show_format").at("format").at("duration").get<std::string>()), 3, 0.03);
+      }
+    }
+}
+
 TEST_F(VideoSound, WhatCanBeCopiedIsNotEncodedAndCopyLeavesTheRestOut) {
   make("in.mkv", clicks() + clicks() + "-map 0 -map 1 -map 2 ", "-c:v ffv1 -c:a:0 aac -c:a:1 pcm_s16le");
   EXPECT_EQ(encoded("in.mkv", "out.mp4"),

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Decoded sound into other rates, channels and formats.
+#pragma once
+
+extern "C" {
+#include <libswresample/swresample.h>
+}
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "image/ffmpeg_handles.h"
+
+namespace afterglow {
+
+struct SwrDeleter {
+  void operator()(SwrContext* converter) const { swr_free(&converter); }
+};
+using SwrHandle = std::unique_ptr<SwrContext, SwrDeleter>;
+
+/// Files of floats hold anything.
+template <class T>
+T held_sample(T sample) {
+  return std::isnan(sample) ? T{0} : std::clamp(sample, T{-1}, T{1});
+}
+
+/// The same for all samples of a frame that are floats. False: there is no memory.
+bool hold_samples(AVFrame& frame);
+
+/// A copy; where the file says none, the usual one for so many channels. Negative: an error.
+int known_layout(AVChannelLayout& to, const AVChannelLayout& from);
+
+/// Null: FFmpeg cannot.
+SwrHandle converter_between(const AVFrame& from, const AVChannelLayout& from_layout, const AVChannelLayout& layout,
+                            AVSampleFormat format, int rate);
+
+}  // namespace afterglow
