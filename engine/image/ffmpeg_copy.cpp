@@ -383,6 +383,11 @@ Result<bool> FfmpegCopy::wait_for_next() {
   }
 }
 
+/// The next packet of this stream is later than `until`.
+Result<void> FfmpegCopy::wait(std::size_t stream, std::int64_t next, std::int64_t until) const {
+  return sounds_[stream] ? sounds_[stream]->wait(next, until, put_sound(stream)) : Result<void>();
+}
+
 Result<void> FfmpegCopy::copy(std::int64_t until) {
   while (!ended_) {
     if (!waiting_) {
@@ -392,10 +397,11 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
     const auto stream = static_cast<std::size_t>(waiting_->stream_index);
     const std::int64_t stamp = waiting_->dts != AV_NOPTS_VALUE ? waiting_->dts : waiting_->pts;
     if (stamp != AV_NOPTS_VALUE) {
-      const std::int64_t time = begin_of(*waiting_, stamp);
+      constexpr std::int64_t kFarthest = kFarthestSound * AV_TIME_BASE;
+      const std::int64_t time = std::clamp(begin_of(*waiting_, stamp), -kFarthest, kFarthest);
       const bool heard = sounds_[stream] != nullptr;  // its decoder needs what comes before the range, too
       if ((time >= range_.begin || heard) && time < range_.end) {
-        if (time - range_.shift >= until) return {};  // later
+        if (time - range_.shift >= until) return wait(stream, time - range_.shift, until);
         if (heard) {
           AFTERGLOW_CHECK(sounds_[stream]->convert(*waiting_, put_sound(stream)));
         } else if (!texts_[stream] || texts_[stream]->convert(*waiting_))

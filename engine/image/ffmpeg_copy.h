@@ -54,6 +54,7 @@ class FfmpegCopy {
   std::int64_t begin_of(AVPacket& packet, std::int64_t stamp) const;
   Result<bool> wait_for_next();
   Result<void> put(AVPacket& packet);
+  Result<void> wait(std::size_t stream, std::int64_t next, std::int64_t until) const;
   Result<void> write(AVPacket& packet, std::size_t stream) const;
   FfmpegSoundEncoder::Put put_sound(std::size_t stream) const;
   Error cannot_be_read(int code) const;

@@ -6,7 +6,6 @@ extern "C" {
 #include <libavutil/samplefmt.h>
 }
 
-#include <cstdint>
 #include <utility>
 
 namespace afterglow {

@@ -8,11 +8,15 @@ extern "C" {
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 #include "image/ffmpeg_handles.h"
 
 namespace afterglow {
+
+/// Seconds. A stamp beyond that is none: no sound lasts for years.
+inline constexpr std::int64_t kFarthestSound = 1'000'000'000;
 
 struct SwrDeleter {
   void operator()(SwrContext* converter) const { swr_free(&converter); }

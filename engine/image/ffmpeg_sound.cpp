@@ -29,8 +29,6 @@ constexpr std::int64_t kPreroll = kRate / 4;
 constexpr std::int64_t kNear = 2 * kRate;
 /// Stamps of some containers are round: a difference below this is none.
 constexpr std::int64_t kRound = kRate / 100;
-/// Seconds. A stamp beyond that is none: no sound lasts for years.
-constexpr double kFarthest = 1e9;
 /// Places in files whose clock starts anew are so far apart.
 constexpr std::int64_t kApart = AV_TIME_BASE / 2;
 /// As with pictures: decoders that strangers' files may reach.
@@ -235,7 +233,7 @@ class FfmpegSound : public SoundTrack {
   void place(const AVFrame& frame) {
     const std::int64_t stamp = frame.best_effort_timestamp;
     const double seconds = static_cast<double>(stamp) * av_q2d(codec_->pkt_timebase) - start_;
-    if (stamp == AV_NOPTS_VALUE || !(std::abs(seconds) < kFarthest)) {
+    if (stamp == AV_NOPTS_VALUE || !(std::abs(seconds) < double{kFarthestSound})) {
       if (!std::exchange(anchored_, true)) held_ = 0;
       return;
     }

@@ -28,6 +28,8 @@ constexpr int kSoundPiece = 1024;
 constexpr int kRoundStamp = 40;
 /// Seconds. A hole that is longer is a broken stamp.
 constexpr std::int64_t kLongestHole = 3600;
+/// Seconds behind what is written. Sound that begins later has a broken stamp.
+constexpr std::int64_t kLatestBegin = 24 * 3600;
 
 Error encoding_failed(int code) { return {ErrorKind::io, "sound cannot be encoded: " + ffmpeg_error(code)}; }
 Error no_sound_memory() { return {ErrorKind::io, "there is no memory to encode its sound"}; }
@@ -123,12 +125,27 @@ void FfmpegSoundEncoder::cut(std::int64_t begin, std::int64_t end) {
 }
 
 Result<void> FfmpegSoundEncoder::convert(const AVPacket& packet, const Put& put) {
-  AFTERGLOW_CHECK(decode(&packet));
-  return encode(encoder_->frame_size > 0 ? encoder_->frame_size : kSoundPiece, put);
+  AFTERGLOW_CHECK(decode(&packet, put));
+  return encode(piece(), put);
 }
 
+Result<void> FfmpegSoundEncoder::wait(std::int64_t next, std::int64_t until, const Put& put) {
+  const std::int64_t rate = encoder_->sample_rate, now = samples_at(until), held = rate / 2;
+  if (anchored_ && samples_at(next) - next_ >= kLongestHole * rate) return {};
+  // What the decoder and the converter hold, and stamps that are round, come before the packet.
+  const std::int64_t late = std::min(samples_at(next) - rate, now - held) - next_;
+  return late >= held ? be_silent(late, put) : Result<void>();
+}
+
+std::int64_t FfmpegSoundEncoder::samples_at(std::int64_t time) const {
+  constexpr std::int64_t kLimit = kFarthestSound * AV_TIME_BASE;
+  return av_rescale_q(std::clamp(time, -kLimit, kLimit), kMicroseconds, encoder_->time_base);
+}
+
+int FfmpegSoundEncoder::piece() const { return encoder_->frame_size > 0 ? encoder_->frame_size : kSoundPiece; }
+
 Result<void> FfmpegSoundEncoder::finish(const Put& put) {
-  AFTERGLOW_CHECK(decode(nullptr));
+  AFTERGLOW_CHECK(decode(nullptr, put));
   if (converter_) AFTERGLOW_CHECK(convert_samples(nullptr));
   AFTERGLOW_CHECK(encode(1, put));
   if (const int code = avcodec_send_frame(encoder_.get(), nullptr); code < 0) return encoding_failed(code);
@@ -136,10 +153,10 @@ Result<void> FfmpegSoundEncoder::finish(const Put& put) {
 }
 
 /// Null: the end.
-Result<void> FfmpegSoundEncoder::decode(const AVPacket* packet) {
+Result<void> FfmpegSoundEncoder::decode(const AVPacket* packet, const Put& put) {
   avcodec_send_packet(decoder_.get(), packet);  // what it cannot take is silent
   while (avcodec_receive_frame(decoder_.get(), frame_.get()) == 0) {
-    auto taken = take(*frame_);
+    auto taken = take(*frame_, put);
     av_frame_unref(frame_.get());
     AFTERGLOW_CHECK(std::move(taken));
   }
@@ -160,29 +177,31 @@ bool FfmpegSoundEncoder::fits(const AVFrame& frame) {
   return true;
 }
 
-Result<void> FfmpegSoundEncoder::take(AVFrame& frame) {
+Result<void> FfmpegSoundEncoder::take(AVFrame& frame, const Put& put) {
   if (frame.sample_rate < 1 || !fits(frame)) return {};
   if (!hold_samples(frame)) return no_sound_memory();
-  AFTERGLOW_CHECK(place(frame));
+  AFTERGLOW_CHECK(place(frame, put));
   return convert_samples(&frame);
 }
 
 /// Where the frame's samples belong: behind those before, or where its stamp says when that is elsewhere.
-Result<void> FfmpegSoundEncoder::place(const AVFrame& frame) {
+Result<void> FfmpegSoundEncoder::place(const AVFrame& frame, const Put& put) {
   if (frame.best_effort_timestamp == AV_NOPTS_VALUE) return {};
   const std::int64_t rate = encoder_->sample_rate;
-  const std::int64_t at = av_rescale_q(frame.best_effort_timestamp, decoder_->pkt_timebase, encoder_->time_base) -
-                          av_rescale_q(begin_, kMicroseconds, encoder_->time_base);
-  const std::int64_t late = at - next_ - swr_get_delay(converter_.get(), rate);
+  const std::int64_t stamp = av_rescale_q(frame.best_effort_timestamp, decoder_->pkt_timebase, encoder_->time_base);
+  if (stamp < -kFarthestSound * rate || stamp > kFarthestSound * rate) return {};
+  const std::int64_t late = stamp - samples_at(begin_) - next_ - swr_get_delay(converter_.get(), rate);
   if (!std::exchange(anchored_, true)) {
-    if (late > 0) return late < kLongestHole * rate ? be_silent(late) : Result<void>();
-    next_ += late;  // what comes before the output's beginning is left out
-  } else if (late > rate / kRoundStamp && late < kLongestHole * rate) {
-    return be_silent(late);
-  } else if (late < -rate / kRoundStamp) {
-    doubled_ = -late;
+    if (late > 0) return late < kLatestBegin * rate ? be_silent(late, put) : Result<void>();
+    if (next_ <= 0) {
+      next_ += late;  // what comes before the output's beginning is left out
+      return {};
+    }
   }
-  return {};
+  const bool behind = late > rate / kRoundStamp;
+  const bool over = late < -rate / kRoundStamp || (doubled_ > 0 && late < 0);
+  doubled_ = over ? -late : 0;
+  return behind && late < kLongestHole * rate ? be_silent(late, put) : Result<void>();
 }
 
 FrameHandle FfmpegSoundEncoder::room_for(std::int64_t count) const {
@@ -207,13 +226,17 @@ Result<void> FfmpegSoundEncoder::convert_samples(const AVFrame* frame) {
   return add(*samples, std::max(made, 0));
 }
 
-Result<void> FfmpegSoundEncoder::be_silent(std::int64_t count) {
+/// A second at a time, which is encoded before the next is made.
+Result<void> FfmpegSoundEncoder::be_silent(std::int64_t count, const Put& put) {
+  doubled_ = 0;
+  count = std::min(count, end_ - std::min(next_, end_));
   while (count > 0) {
     const std::int64_t some = std::min<std::int64_t>(count, encoder_->sample_rate);
     const FrameHandle samples = room_for(some);
     if (!samples) return no_sound_memory();
     av_samples_set_silence(samples->data, 0, samples->nb_samples, samples->ch_layout.nb_channels, encoder_->sample_fmt);
     AFTERGLOW_CHECK(add(*samples, some));
+    AFTERGLOW_CHECK(encode(piece(), put));
     count -= some;
   }
   return {};
@@ -235,7 +258,7 @@ Result<void> FfmpegSoundEncoder::add(const AVFrame& samples, std::int64_t count)
 
 /// As long as so many samples wait.
 Result<void> FfmpegSoundEncoder::encode(std::int64_t least, const Put& put) {
-  const int most = encoder_->frame_size > 0 ? encoder_->frame_size : kSoundPiece;
+  const int most = piece();
   while (av_audio_fifo_size(waiting_.get()) >= least) {
     const int count = std::min(most, av_audio_fifo_size(waiting_.get()));
     const FrameHandle samples = room_for(count);

@@ -31,6 +31,9 @@ class FfmpegSoundEncoder {
   void cut(std::int64_t begin, std::int64_t end);
   /// The stream's next packet. What is damaged becomes silence. Errors: io, those of `put`.
   Result<void> convert(const AVPacket& packet, const Put& put);
+  /// The output has come to `until`, and the stream's next packet is later: at `next` (both in microseconds of the
+  /// output's clock). What lies between is silence. Errors: as above.
+  Result<void> wait(std::int64_t next, std::int64_t until, const Put& put);
   /// All that is left. Errors: as above.
   Result<void> finish(const Put& put);
 
@@ -40,13 +43,15 @@ class FfmpegSoundEncoder {
   };
 
   FfmpegSoundEncoder() = default;
-  Result<void> decode(const AVPacket* packet);
-  Result<void> take(AVFrame& frame);
-  Result<void> place(const AVFrame& frame);
+  Result<void> decode(const AVPacket* packet, const Put& put);
+  Result<void> take(AVFrame& frame, const Put& put);
+  Result<void> place(const AVFrame& frame, const Put& put);
   bool fits(const AVFrame& frame);
   Result<void> add(const AVFrame& samples, std::int64_t count);
   Result<void> convert_samples(const AVFrame* frame);
-  Result<void> be_silent(std::int64_t count);
+  Result<void> be_silent(std::int64_t count, const Put& put);
+  std::int64_t samples_at(std::int64_t time) const;
+  int piece() const;
   FrameHandle room_for(std::int64_t count) const;
   Result<void> encode(std::int64_t least, const Put& put);
   Result<void> drain(const Put& put) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sound that a container does not take is encoded: clicks at known times are looked for in what comes out.
 #include <cstring>
+#include <map>
 #include <tuple>
 
 #include "video_out_test.h"
@@ -153,6 +154,45 @@ TEST_F(VideoSound, WhatIsNoSoundIsSilentOrHeld) {
         EXPECT_NEAR(std::stod(probe(to, "-show_format").at("format").at("duration").get<std::string>()), 3, 0.03);
       }
     }
+}
+
+TEST_F(VideoSound, MuchSilenceLiesBesideItsPictures) {
+  ASSERT_EQ(shell("ffmpeg -v error -y -f lavfi -i testsrc=s=64x48:r=4:d=40 -itsoffset 30 -f lavfi -i sine=r=8000:d=10 "
+                  "-c:v ffv1 -c:a pcm_s16le in.mkv")
+                .exit_code,
+            0);
+  for (const std::string to : {"out.mp4", "out.webm"}) {
+    encoded("in.mkv", to);
+    double last = 0, behind = 0;
+    int sounds = 0;
+    const auto packets = probe(to, "-show_packets -show_entries packet=codec_type,pos,dts_time").at("packets");
+    std::map<long long, std::pair<bool, double>> in_order;
+    for (const auto& packet : packets)
+      in_order[std::stoll(packet.at("pos").get<std::string>())] = {packet.at("codec_type") == "audio",
+                                                                   std::stod(packet.at("dts_time").get<std::string>())};
+    for (const auto& [pos, packet] : in_order) {
+      const auto& [sound, time] = packet;
+      sounds += sound ? 1 : 0;
+      if (sound) behind = std::max(behind, last - time);
+      if (!sound) last = std::max(last, time);
+    }
+    EXPECT_GT(sounds, 30);
+    EXPECT_LT(behind, 2) << to;
+    const Outcome silent = shell("ffmpeg -v info -i " + to + " -af silencedetect=d=5 -f null - 2>&1");
+    const std::string ends = "silence_end: ";
+    const std::size_t at = silent.out.find(ends);
+    ASSERT_NE(at, std::string::npos) << silent.out;
+    EXPECT_NEAR(std::stod(silent.out.substr(at + ends.size())), 30, 0.05) << to;
+  }
+}
+
+TEST_F(VideoSound, SoundMayBeginHoursLate) {
+  ASSERT_EQ(shell("ffmpeg -v error -y -f lavfi -i testsrc=s=64x48:r=4:d=1 -itsoffset 7500 -f lavfi -i sine=r=8000:d=1 "
+                  "-c:v ffv1 -c:a pcm_s16le in.mkv")
+                .exit_code,
+            0);
+  encoded("in.mkv", "out.mp4");
+  EXPECT_NEAR(std::stod(sound_of("out.mp4").at("duration").get<std::string>()), 7501, 0.3);
 }
 
 TEST_F(VideoSound, WhatCanBeCopiedIsNotEncodedAndCopyLeavesTheRestOut) {
