@@ -333,9 +333,10 @@ Result<void> FfmpegCopy::put(AVPacket& packet) {
 /// Files of MP3 begin behind what their decoder needs first.
 void FfmpegCopy::cut_sound() {
   const bool late = std::string_view(input_->iformat->name) == "mp3" && input_->start_time != AV_NOPTS_VALUE;
-  const std::int64_t by = late ? input_->start_time : 0;
+  late_ = late ? input_->start_time : 0;
+  const std::int64_t end = range_.end;
   for (const auto& sound : sounds_)
-    if (sound) sound->cut(range_.shift + by, range_.end);
+    if (sound) sound->cut(range_.shift + late_, end < INT64_MAX - late_ ? end + late_ : INT64_MAX);
 }
 
 /// By the clock of the output.
@@ -400,7 +401,7 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
       constexpr std::int64_t kFarthest = kFarthestSound * AV_TIME_BASE;
       const std::int64_t time = std::clamp(begin_of(*waiting_, stamp), -kFarthest, kFarthest);
       const bool heard = sounds_[stream] != nullptr;  // its decoder needs what comes before the range, too
-      if ((time >= range_.begin || heard) && time < range_.end) {
+      if ((time >= range_.begin || heard) && time - (heard ? late_ : 0) < range_.end) {
         if (time - range_.shift >= until) return wait(stream, time - range_.shift, until);
         if (heard) {
           AFTERGLOW_CHECK(sounds_[stream]->convert(*waiting_, put_sound(stream)));

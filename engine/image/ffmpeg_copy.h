@@ -69,6 +69,7 @@ class FfmpegCopy {
   PacketHandle waiting_;  ///< read, and later than the last `until`
   CopyRange range_;
   std::optional<ClockFollower> clock_;
+  std::int64_t late_ = 0;  ///< so much of encoded sound comes before what is its beginning
   bool encodes_ = false, ended_ = false;
 };
 

@@ -129,6 +129,19 @@ TEST_F(VideoSound, SoundOfAnotherFileIsEncoded) {
   }
 }
 
+TEST_F(VideoSound, APartOfAnotherFileIsHeardToItsEnd) {
+  make_frames(48);
+  const std::string tone = "ffmpeg -v error -y -f lavfi -i sine=r=48000:d=3 ";
+  ASSERT_EQ(shell(tone + "a.wav").exit_code, 0);
+  ASSERT_EQ(shell(tone + "-c:a libmp3lame a.mp3").exit_code, 0);
+  for (const std::string from : {"a.wav", "a.mp3"}) {
+    const Outcome part = make_video("out.webm", {"--audio", from, "--frames", "1013-1036"});
+    ASSERT_EQ(part.exit_code, kDone) << part.err;
+    ASSERT_EQ(shell("ffmpeg -v error -y -i out.webm -map 0:a -f s16le -ac 1 part.raw").exit_code, 0);
+    EXPECT_EQ(read("part.raw").size() / 2, 48000u) << from;
+  }
+}
+
 /// Sound that begins late, pauses, or has a stamp for each packet that is rounded to milliseconds.
 TEST_F(VideoSound, HolesAreSilent) {
   make("late.mkv", "-itsoffset 0.2503 " + clicks(), "-c:v ffv1 -c:a pcm_s16le");
