@@ -11,6 +11,7 @@ extern "C" {
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -93,6 +94,13 @@ bool can_copy(const AVOutputFormat& format, const AVStream& from) {
   const AVMediaType kind = from.codecpar->codec_type;
   const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
   return (known && can_hold(format, from)) || is_attachment(format, from);
+}
+
+/// Why sound of more channels is not encoded.
+std::string most_channels(const AVOutputFormat& format) {
+  const std::string_view name = format.name;
+  const char* codec = name == "mp4" ? "AAC" : name == "webm" ? "Opus" : nullptr;
+  return codec ? fmt::format(", and {} holds at most {} channels", codec, FfmpegSoundEncoder::kMostChannels) : "";
 }
 
 /// Streams that one message is about.
@@ -231,8 +239,9 @@ Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
 Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagnostics& diagnostics) {
   AVFormatContext& out = output_.container();
   const bool sound_only = what == Copied::sound;
-  Named left, pictures, encoded;
-  std::string codec;
+  Named left, pictures;
+  std::map<std::string, Named> encoded;  // by the codec that they get
+  bool too_many = false;
   const int worked_on = av_find_best_stream(input_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   bool sound = false;
   target_.assign(input_->nb_streams, -1);
@@ -248,24 +257,25 @@ Result<void> FfmpegCopy::add_streams(Copied what, const std::string& name, Diagn
       continue;
     AFTERGLOW_TRY(const AVStream* to, add_stream(i));
     if (!to && !is_told_elsewhere(from)) left.add(from, i);
+    too_many =
+        too_many || (!to && encodes_ && from.codecpar->ch_layout.nb_channels > FfmpegSoundEncoder::kMostChannels);
     if (!to) continue;
     target_[i] = to->index;
-    if (!sounds_[i]) continue;
-    encoded.add(from, i);
-    codec = avcodec_get_name(to->codecpar->codec_id);
+    if (sounds_[i]) encoded[avcodec_get_name(to->codecpar->codec_id)].add(from, i);
   }
   if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
   if (!sound_only) av_dict_copy(&out.metadata, input_->metadata, AV_DICT_DONT_OVERWRITE);
   if (!pictures.names.empty())
     diagnostics.warn(fmt::format("{}: of the pictures of {} one stream is worked on; {} {} left out", name,
                                  file_.string(), join(pictures.names), pictures.one() ? "is" : "are"));
-  if (!encoded.names.empty())
-    diagnostics.warn(fmt::format("{}: {} encoded as {}, since {} does not take {}{}{}", name, encoded.of(file_), codec,
-                                 out.oformat->name, encoded.one() ? "it" : "them", encoded.takers(),
+  for (const auto& [codec, streams] : encoded)
+    diagnostics.warn(fmt::format("{}: {} encoded as {}, since {} does not take {}{}{}", name, streams.of(file_), codec,
+                                 out.oformat->name, streams.one() ? "it" : "them", streams.takers(),
                                  sound_only ? "" : "; --audio copy does not encode"));
   if (!left.names.empty())
-    diagnostics.warn(fmt::format("{}: {} left out, since {} does not take {}{}", name, left.of(file_),
-                                 out.oformat->name, left.one() ? "it" : "them", left.takers()));
+    diagnostics.warn(fmt::format("{}: {} left out, since {} does not take {}{}{}", name, left.of(file_),
+                                 out.oformat->name, left.one() ? "it" : "them",
+                                 too_many ? most_channels(*out.oformat) : "", left.takers()));
   return {};
 }
 

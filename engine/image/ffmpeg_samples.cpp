@@ -21,6 +21,13 @@ void hold_planes(AVFrame& frame, bool planar) {
   }
 }
 
+/// A copy; where the file says none, the usual one for so many channels. Negative: an error.
+int known_layout(AVChannelLayout& to, const AVChannelLayout& from) {
+  if (from.order != AV_CHANNEL_ORDER_UNSPEC) return av_channel_layout_copy(&to, &from);
+  av_channel_layout_default(&to, from.nb_channels);
+  return 0;
+}
+
 }  // namespace
 
 bool hold_samples(AVFrame& frame) {
@@ -34,12 +41,6 @@ bool hold_samples(AVFrame& frame) {
   else
     hold_planes<double>(frame, planar);
   return true;
-}
-
-int known_layout(AVChannelLayout& to, const AVChannelLayout& from) {
-  if (from.order != AV_CHANNEL_ORDER_UNSPEC) return av_channel_layout_copy(&to, &from);
-  av_channel_layout_default(&to, from.nb_channels);
-  return 0;
 }
 
 SwrHandle converter_between(const AVFrame& from, const AVChannelLayout& from_layout, const AVChannelLayout& layout,

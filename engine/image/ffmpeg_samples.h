@@ -32,10 +32,7 @@ T held_sample(T sample) {
 /// The same for all samples of a frame that are floats. False: there is no memory.
 bool hold_samples(AVFrame& frame);
 
-/// A copy; where the file says none, the usual one for so many channels. Negative: an error.
-int known_layout(AVChannelLayout& to, const AVChannelLayout& from);
-
-/// Null: FFmpeg cannot.
+/// Where `from_layout` says none it is the usual one for so many channels. Null: FFmpeg cannot.
 SwrHandle converter_between(const AVFrame& from, const AVChannelLayout& from_layout, const AVChannelLayout& layout,
                             AVSampleFormat format, int rate);
 

@@ -11,6 +11,7 @@ extern "C" {
 #include <array>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "image/ffmpeg_clock.h"
 #include "image/ffmpeg_log.h"
@@ -72,8 +73,21 @@ CodecHandle open_sound_decoder(const AVStream& from) {
   return avcodec_open2(decoder.get(), codec, nullptr) < 0 ? nullptr : std::move(decoder);
 }
 
-/// `usual`: with the usual layout of so many channels, in place of one that the codec may not have.
-CodecHandle open_sound_encoder(const AVCodecParameters& from, const AVOutputFormat& format, bool usual) {
+/// That of the file, and others of so many channels, for codecs that do not have it: Opus knows 3 as 3.0, 4 as quad.
+std::vector<AVChannelLayout> layouts_for(const AVChannelLayout& from) {
+  const AVChannelLayout surround = AV_CHANNEL_LAYOUT_SURROUND, quad = AV_CHANNEL_LAYOUT_QUAD;
+  AVChannelLayout usual{};
+  av_channel_layout_default(&usual, from.nb_channels);
+  std::vector<AVChannelLayout> all;
+  if (from.order != AV_CHANNEL_ORDER_UNSPEC) all.push_back(from);
+  all.push_back(usual);
+  if (from.nb_channels == 3) all.push_back(surround);
+  if (from.nb_channels == 4) all.push_back(quad);
+  return all;
+}
+
+CodecHandle open_sound_encoder(const AVCodecParameters& from, const AVOutputFormat& format,
+                               const AVChannelLayout& layout) {
   const Target target = target_for(format, from);
   const AVCodec* codec = target.encoder ? avcodec_find_encoder_by_name(target.encoder) : nullptr;
   CodecHandle encoder(codec ? avcodec_alloc_context3(codec) : nullptr);
@@ -82,14 +96,22 @@ CodecHandle open_sound_encoder(const AVCodecParameters& from, const AVOutputForm
   encoder->sample_fmt = target.format;
   encoder->sample_rate = rate_for(target, from.sample_rate);
   encoder->time_base = {1, encoder->sample_rate};
-  if (usual) av_channel_layout_default(&encoder->ch_layout, channels);
-  if (!usual && known_layout(encoder->ch_layout, from.ch_layout) < 0) return nullptr;
+  if (av_channel_layout_copy(&encoder->ch_layout, &layout) < 0) return nullptr;
   if (!target.any_rate) encoder->bit_rate = std::int64_t{kBitsASecond} * channels;
   encoder->flags |= AV_CODEC_FLAG_BITEXACT;
   if ((format.flags & AVFMT_GLOBALHEADER) != 0) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   const int code = avcodec_open2(encoder.get(), codec, nullptr);
   static_cast<void>(ffmpeg_said());
   return code < 0 ? nullptr : std::move(encoder);
+}
+
+/// Channel by channel where the file does not say what they are. What is low alone is heard in the middle.
+const AVChannelLayout& layout_of(const AVFrame& frame, const AVChannelLayout& encoded) {
+  const AVChannelLayout low = AV_CHANNEL_LAYOUT_2POINT1, middle = AV_CHANNEL_LAYOUT_SURROUND;
+  const AVChannelLayout& given = frame.ch_layout;
+  const bool bare = given.order == AV_CHANNEL_ORDER_UNSPEC && given.nb_channels == encoded.nb_channels;
+  const bool moved = av_channel_layout_compare(&given, &low) == 0 && av_channel_layout_compare(&encoded, &middle) == 0;
+  return bare || moved ? encoded : given;
 }
 
 /// From this sample on.
@@ -107,10 +129,11 @@ std::array<void*, AV_NUM_DATA_POINTERS> planes_from(const AVFrame& samples, std:
 
 std::unique_ptr<FfmpegSoundEncoder> FfmpegSoundEncoder::open(const AVStream& from, const AVOutputFormat& format) {
   std::unique_ptr<FfmpegSoundEncoder> out(new FfmpegSoundEncoder());
-  // Planes beyond those that a frame itself has room for are not looked after here.
-  if (from.codecpar->ch_layout.nb_channels > AV_NUM_DATA_POINTERS) return nullptr;
-  out->encoder_ = open_sound_encoder(*from.codecpar, format, false);
-  if (!out->encoder_) out->encoder_ = open_sound_encoder(*from.codecpar, format, true);
+  if (from.codecpar->ch_layout.nb_channels > kMostChannels) return nullptr;
+  for (const AVChannelLayout& layout : layouts_for(from.codecpar->ch_layout)) {
+    out->encoder_ = open_sound_encoder(*from.codecpar, format, layout);
+    if (out->encoder_) break;
+  }
   if (!out->encoder_) return nullptr;
   out->decoder_ = open_sound_decoder(from);
   out->frame_.reset(av_frame_alloc());
@@ -168,8 +191,8 @@ bool FfmpegSoundEncoder::fits(const AVFrame& frame) {
   const bool same =
       converter_ && frame.sample_rate == rate_ && frame.format == format_ && frame.ch_layout.nb_channels == channels_;
   if (same) return true;
-  converter_ =
-      converter_between(frame, frame.ch_layout, encoder_->ch_layout, encoder_->sample_fmt, encoder_->sample_rate);
+  converter_ = converter_between(frame, layout_of(frame, encoder_->ch_layout), encoder_->ch_layout,
+                                 encoder_->sample_fmt, encoder_->sample_rate);
   if (!converter_) return false;
   rate_ = frame.sample_rate;
   format_ = frame.format;

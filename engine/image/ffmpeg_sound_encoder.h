@@ -22,6 +22,9 @@ class FfmpegSoundEncoder {
   /// Takes what is ready: packets in units of encoder().time_base, since the output's beginning.
   using Put = std::function<Result<void>(AVPacket&)>;
 
+  /// As many as AAC and Opus hold, and as a frame of FFmpeg has room for.
+  static constexpr int kMostChannels = AV_NUM_DATA_POINTERS;
+
   /// Null where `format` has no codec for it, or FFmpeg no decoder that is used here.
   static std::unique_ptr<FfmpegSoundEncoder> open(const AVStream& from, const AVOutputFormat& format);
 
