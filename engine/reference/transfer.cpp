@@ -37,7 +37,8 @@ glm::dmat3 adapted(const glm::dvec2& from, const glm::dvec2& to) {
 
 Primaries primaries_of(const std::string& name) {
   if (name == "aces2065_1") return {{0.7347, 0.2653}, {0, 1}, {0.0001, -0.0770}, {0.32168, 0.33767}};
-  if (name == "lin_p3d65") return {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
+  if (name == "adobe_rgb") return {{0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65};
+  if (name == "lin_p3d65" || name == "display_p3") return {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
   if (name == "acescct" || name == "acescg")
     return {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
   if (name == "logc3") return {{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
@@ -134,6 +135,9 @@ double hlg_light(double v) {
 }
 
 double as_is(double x) { return x; }
+constexpr double kAdobe = 2 + 51.0 / 256;
+double adobe(double x) { return powered(x, 1 / kAdobe); }
+double adobe_light(double v) { return powered(v, kAdobe); }
 double gamma22(double x) { return powered(x, 1 / 2.2); }
 double gamma22_light(double v) { return powered(v, 2.2); }
 double gamma24(double x) { return powered(x, 1 / 2.4); }
@@ -173,6 +177,8 @@ constexpr Transfer kTransfers[] = {{"aces2065_1", as_is, as_is},
                                    {"lin_rec2020", as_is, as_is},
                                    {"acescct", acescct_light, acescct},
                                    {"cineon", cineon_light, cineon},
+                                   {"adobe_rgb", adobe_light, adobe},
+                                   {"display_p3", srgb_to_linear, linear_to_srgb},
                                    {"gamma22", gamma22_light, gamma22},
                                    {"gamma24", gamma24_light, gamma24},
                                    {"hlg", hlg_light, hlg},
@@ -204,7 +210,10 @@ const std::vector<std::string>& transfer_names() {
 const std::vector<std::string>& table_spaces() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = transfer_names();
-    std::erase_if(all, [](const std::string& name) { return transfer(name).to_light == as_is && name != "linear"; });
+    std::erase_if(all, [](const std::string& name) {
+      const bool linear = transfer(name).to_light == as_is && name != "linear";
+      return linear || name == "adobe_rgb" || name == "display_p3";  // of pictures alone
+    });
     return all;
   }();
   return names;
