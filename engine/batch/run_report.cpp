@@ -121,7 +121,7 @@ std::string shots_text(const RunReport& report) {
   for (const auto& frame : report.frames)
     if (frame.begins_shot && frame.state == FrameRecord::State::done) frames.push_back(frame.job.frame);
   std::ranges::sort(frames);
-  frames.erase(std::ranges::unique(frames).begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   return frames.empty() ? "" : fmt::format("shots begin at frames {}\n", frames_text(frames));
 }
 

@@ -12,7 +12,7 @@ namespace afterglow {
 struct ShotSketch {
   std::vector<float> tones;    ///< 32 × 18 cells, three channels in stops
   std::vector<float> details;  ///< 64 × 36 cells, how many stops each is brighter than those around it
-  /// Rows and columns of those 64 × 36 at the borders that are black: a letterbox.
+  /// Rows and columns of those 64 × 36 at the borders that are black bars.
   struct Bars {
     int left = 0, right = 0, top = 0, bottom = 0;
   } bars;
