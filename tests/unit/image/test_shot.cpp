@@ -72,6 +72,16 @@ TEST(Shot, OtherScenesAreCuts) {
       }
 }
 
+/// A bright sky over dark ground is what many landscapes have in common.
+TEST(Shot, NightIsNotTheDayBefore) {
+  const Picture day = view_of(scenes()[2], 0.5, 0.5, 1);
+  const auto other_side = [&](float scale) {
+    return changed(day, [&](float, int x, int y, int of) { return day.color.at(kWidth - 1 - x, y)[of] / scale; });
+  };
+  EXPECT_FALSE(follows(day, other_side(8)));
+  EXPECT_TRUE(follows(day, changed(day, [](float c, int, int, int) { return c / 8; }))) << "its own night";
+}
+
 /// From one camera to another in the same place.
 TEST(Shot, OtherCamerasInASceneAreCuts) {
   for (const std::size_t scene : {0, 4})
