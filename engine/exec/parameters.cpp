@@ -48,8 +48,7 @@ void write_number(double value, ParamType type, std::byte* to) {
 /// std140: components of a vector follow each other; columns of a matrix and elements of an array are 16 bytes apart.
 void write_value(const ParamValue& value, const KernelParam& param, std::byte* to) {
   constexpr std::size_t kApart = 16;
-  const int side = matrix_side(param.type);
-  const auto vector = static_cast<std::size_t>(side > 0 ? side : component_count(param.type));
+  const auto vector = static_cast<std::size_t>(vector_length(param.type));
   for (std::size_t i = 0; i < value.v.size(); ++i)
     write_number(value.v[i], param.type, to + i / vector * kApart + i % vector * 4);
 }

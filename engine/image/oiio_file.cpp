@@ -205,24 +205,26 @@ class OiioFile : public PictureFile {
     return {};
   }
 
-  /// A separated TIFF of which OpenImageIO did not make RGB: it does of cyan, magenta, yellow and black alone.
-  bool inks(const OIIO::ImageSpec& spec) const {
-    constexpr int kSeparated = 5;
-    return format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kSeparated &&
-           spec.nchannels != 3;
+  static constexpr int kSeparated = 5;
+
+  /// PhotometricInterpretation of a TIFF; 0 of other files.
+  int tiff_colors(const OIIO::ImageSpec& spec) const {
+    return format_ == "tiff" ? spec.get_int_attribute("tiff:PhotometricInterpretation", 0) : 0;
   }
+
+  /// A separated TIFF of which OpenImageIO did not make RGB: it does of cyan, magenta, yellow and black alone.
+  bool inks(const OIIO::ImageSpec& spec) const { return tiff_colors(spec) == kSeparated && spec.nchannels != 3; }
 
   /// CMYK of which OpenImageIO has made RGB.
   bool made_of_inks(const OIIO::ImageSpec& spec) const {
-    constexpr int kSeparated = 5;
-    return (format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kSeparated) ||
+    return tiff_colors(spec) == kSeparated ||
            (format_ == "jpeg" && spec.get_string_attribute("jpeg:ColorSpace") == "CMYK");
   }
 
   /// A TIFF whose colours OpenImageIO would have libtiff make RGB of, with eight bits and without adapting their white.
   bool lab(const OIIO::ImageSpec& spec) const {
     constexpr int kLab = 8;  // libtiff reads none of the other kinds
-    return format_ == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 0) == kLab;
+    return tiff_colors(spec) == kLab;
   }
 
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {

@@ -65,6 +65,12 @@ Cells cells_of(const Picture& picture) {
 
 float brightness(const glm::vec3& color) { return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)); }
 
+float mean_brightness(const Cells& cells) {
+  double sum = 0;
+  for (const glm::vec3& cell : cells) sum += brightness(cell);
+  return static_cast<float>(sum / static_cast<double>(cells.size()));
+}
+
 void hold_sparks(Cells& cells) {
   double logarithms = 0;
   for (const glm::vec3& cell : cells) logarithms += std::log2(brightness(cell) + kDarkest);
@@ -93,9 +99,7 @@ std::vector<float> tones_of(const Cells& cells) {
 /// Light that is spread over several cells goes with what is subtracted.
 std::vector<float> details_of(const Cells& cells) {
   std::vector<float> stops;
-  double sum = 0;
-  for (const glm::vec3& cell : cells) sum += brightness(cell);
-  const float dark = kDark * static_cast<float>(sum / static_cast<double>(cells.size())) + kDarkest;
+  const float dark = kDark * mean_brightness(cells) + kDarkest;
   for (const glm::vec3& cell : cells) stops.push_back(std::log2(brightness(cell) + dark));
   std::vector<float> out;
   for (int y = 0; y < kHigh; ++y)
@@ -118,9 +122,7 @@ ShotSketch::Bars common(const ShotSketch::Bars& a, const ShotSketch::Bars& b) {
 }
 
 ShotSketch::Bars bars_of(const Cells& cells) {
-  double sum = 0;
-  for (const glm::vec3& cell : cells) sum += brightness(cell);
-  const float most = kBar * static_cast<float>(sum / static_cast<double>(cells.size())) + kBarNoise;
+  const float most = kBar * mean_brightness(cells) + kBarNoise;
   const auto dark = [&](int x, int y) { return brightness(cells[static_cast<std::size_t>(y * kWide + x)]) < most; };
   const auto row = [&](int y) {
     for (int x = 0; x < kWide; ++x)

@@ -103,10 +103,8 @@ namespace {
 
 /// Whether that is where the parameter's bytes go.
 bool is_of(const Reflection::Member& member, const KernelParam& param) {
-  const int side = matrix_side(param.type);
-  const int vector = side > 0 ? side : component_count(param.type);
-  return member.components == static_cast<std::uint32_t>(vector) &&
-         member.columns == static_cast<std::uint32_t>(std::max(side, 1)) &&
+  return member.components == static_cast<std::uint32_t>(vector_length(param.type)) &&
+         member.columns == static_cast<std::uint32_t>(std::max(matrix_side(param.type), 1)) &&
          member.elements == static_cast<std::uint32_t>(param.elements);
 }
 

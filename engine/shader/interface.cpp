@@ -59,6 +59,7 @@ const ParamTypeInfo& info_of(ParamType type) { return kParamTypes[static_cast<st
 
 int component_count(ParamType type) { return info_of(type).components; }
 int matrix_side(ParamType type) { return info_of(type).side; }
+int vector_length(ParamType type) { return component_count(type) / std::max(matrix_side(type), 1); }
 const char* glsl_name(ParamType type) { return info_of(type).glsl; }
 
 int block_bytes(ParamType type, int elements) {

@@ -69,6 +69,8 @@ inline constexpr int kMostElements = 256;
 int component_count(ParamType type);
 /// Rows and columns of a matrix; 0 of the others.
 int matrix_side(ParamType type);
+/// Numbers that follow each other in a uniform block: of a vector, of a column of a matrix.
+int vector_length(ParamType type);
 const char* glsl_name(ParamType type);
 /// Of a kernel's uniform block, at most.
 int block_bytes(ParamType type, int elements);
