@@ -68,6 +68,10 @@ int block_bytes(ParamType type, int elements) {
 }
 
 std::optional<ParamType> param_type_of(std::string_view glsl_name) {
+  // mat3x3 is mat3; matrices that are not square are no parameters.
+  const bool both_sides = glsl_name.size() == 6 && glsl_name.starts_with("mat") &&
+                          glsl_name.substr(4) == "x" + std::string(1, glsl_name[3]);
+  if (both_sides) glsl_name.remove_suffix(2);
   for (const auto& info : kParamTypes)
     if (glsl_name == info.glsl) return info.type;
   return std::nullopt;

@@ -430,6 +430,8 @@ class ShaderScanner {
       return fail(line, "'source' is what apply gets as its first argument; leave the uniform out");
     if (std::ranges::find(pass_keys(), name) != pass_keys().end())
       return fail(line, fmt::format("'{}' is a key of g:pass itself; choose another name", name));
+    if (kind_of_entry(name))
+      return fail(line, fmt::format("'{}' is a function that the engine calls; choose another name", name));
     return {};
   }
 

@@ -15,7 +15,7 @@ class RandomShader {
   RandomShader(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
 
   /// With an image `source`, and parameters `n` (int; 0 to 9 keep it short), `g` (float), `two` (vec2), `four` (vec4),
-  /// `pair` (ivec2) and `flag` (bool).
+  /// `pair` (ivec2), `flag` (bool), `turn` (mat3), `list` (float[5]) and `points` (vec2[3]).
   std::string text() {
     std::string functions;
     functions_ = static_cast<int>(take(3));
@@ -27,7 +27,8 @@ class RandomShader {
     called_ = functions_;
     return joined(
         {"uniform sampler2D source;\nuniform int n;\nuniform float g;\nuniform vec2 two;\nuniform vec4 four;\n"
-         "uniform ivec2 pair;\nuniform bool flag;\n",
+         "uniform ivec2 pair;\nuniform bool flag;\nuniform mat3 turn;\nuniform float list[5];\nuniform vec2 "
+         "points[3];\n",
          functions, "vec4 sample_at(ivec2 pixel) {\n  vec4 c = fetch(source, pixel);\n  int k = n;\n", block(3, false),
          "  return c;\n}\n"});
   }
@@ -45,7 +46,7 @@ class RandomShader {
   std::string digit() { return std::to_string(take(7)); }
 
   std::string number(int depth) {
-    switch (depth > 0 ? take(10) : take(3)) {
+    switch (depth > 0 ? take(14) : take(3)) {
       case 0:
         return joined({"c.", component()});
       case 1:
@@ -64,6 +65,14 @@ class RandomShader {
         return joined({"four.", component()});
       case 8:
         return joined({"float(pair.", std::string(1, "xy"[take(2)]), ")"});
+      case 9:
+        return joined({"list[clamp(k, 0, 4)]"});
+      case 10:
+        return joined({"list[", std::to_string(take(5)), "]"});
+      case 11:
+        return joined({"turn[clamp(k, 0, 2)].", std::string(1, "xyz"[take(3)])});
+      case 12:
+        return joined({"points[clamp(k, 0, 2)].", std::string(1, "xy"[take(2)])});
       default:
         return joined({"max(", number(depth - 1), ", ", digit(), ".5)"});
     }
@@ -86,7 +95,7 @@ class RandomShader {
     }
   }
   std::string vector(int depth) {
-    switch (depth > 0 ? take(7) : take(2)) {
+    switch (depth > 0 ? take(9) : take(2)) {
       case 0:
         return "c";
       case 1:
@@ -100,6 +109,10 @@ class RandomShader {
         return "four";
       case 5:
         return "vec4(two.yx, vec2(pair))";
+      case 6:
+        return joined({"vec4(turn * ", vector(0), ".xyz, ", number(0), ")"});
+      case 7:
+        return joined({"vec4(points[", std::to_string(take(3)), "], turn[", std::to_string(take(3)), "].zx)"});
       default:
         return joined({"mix(", vector(depth - 1), ", ", vector(depth - 1), ", ", number(depth - 1), ")"});
     }

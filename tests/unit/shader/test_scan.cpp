@@ -197,14 +197,15 @@ TEST(Scan, PrototypesOfEntryPointsAreNotDefinitions) {
 TEST(Scan, ArraysOfParameters) {
   const ShaderScan scan = scanned(
       "#define MANY 9\nconst int few = 3;\nuniform float w[MANY], one, v [ few ];\nuniform vec2 p[0x10];\n"
-      "uniform mat3 turn;\nvec4 apply(vec4 color) { return color * w[2]; }\n");
+      "uniform mat3 turn;\nuniform mat4x4 other;\nvec4 apply(vec4 color) { return color * w[2]; }\n");
   const auto& params = scan.interface.params;
-  ASSERT_EQ(params.size(), 5u);
+  ASSERT_EQ(params.size(), 6u);
   EXPECT_EQ(params[0].elements, 9);
   EXPECT_EQ(params[1].elements, 0);
   EXPECT_EQ(params[2].elements, 3);
   EXPECT_EQ(params[3].elements, 16);
   EXPECT_EQ(params[4].type, ParamType::matrix3);
+  EXPECT_EQ(params[5].type, ParamType::matrix4);
 }
 
 struct Bad {
@@ -246,6 +247,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"uniform bool a[4];\n" + kEnd, 1, "'a': arrays of this type"},
         Bad{"uniform mat3 a[4];\n" + kEnd, 1, "'a': arrays of this type"},
         Bad{"uniform sampler2D a[4];\n" + kEnd, 1, "'a': arrays of this type"},
+        Bad{"\nuniform float apply;\n" + kEnd, 2, "'apply' is a function that the engine calls; choose another name"},
+        Bad{"uniform sampler2D sample_at;\n" + kEnd, 1, "'sample_at' is a function that the engine calls"},
+        Bad{"uniform mat3x2 m;\n" + kEnd, 1, "cannot be of type 'mat3x2'",
+            "float, vec2, vec3, vec4, int, ivec2, bool, mat2, mat3, mat4, sampler2D", "mat2"},
         Bad{"uniform mat4x3 m;\n" + kEnd, 1, "cannot be of type 'mat4x3'",
             "float, vec2, vec3, vec4, int, ivec2, bool, mat2, mat3, mat4, sampler2D", "mat3"},
         Bad{"uniform flaot m;\n" + kEnd, 1, "cannot be of type 'flaot'", "float", "float"},

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <spirv-tools/libspirv.hpp>
@@ -36,6 +37,11 @@ std::vector<std::byte> values(const CompiledKernel& kernel, std::int32_t n, floa
   set("four", std::array<float, 4>{0.25f, g, -2.f, 1.f});
   set("pair", std::array<std::int32_t, 2>{n - 3, 2});
   set("flag", std::int32_t{n == 5});
+  // Columns and elements are as far apart as vec4 are.
+  using Vector = std::array<float, 4>;
+  set("turn", std::array<Vector, 3>{Vector{g, -1.f, 0.5f}, {0.125f, 2.f, g}, {-0.5f, 0.f, 1.f}});
+  set("list", std::array<Vector, 5>{Vector{0.5f}, {g}, {-3.f}, {0.f}, {1.25f}});
+  set("points", std::array<Vector, 3>{Vector{1.f, g}, {-2.f, 0.f}, {0.75f, 0.25f}});
   return out;
 }
 
@@ -62,7 +68,8 @@ TEST(SpirvSteps, PixelsOfRandomShadersStay) {
   std::mt19937 random(11);
   KernelCompiler compiler({});
   int guarded = 0;
-  for (int round = 0; round < 40; ++round) {
+  const int rounds = std::getenv("AFTERGLOW_LONG") != nullptr ? 1000 : 40;
+  for (int round = 0; round < rounds; ++round) {
     std::vector<std::uint8_t> bytes(36);
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const std::string text = fuzz::RandomShader(bytes.data(), bytes.size()).text();
