@@ -66,6 +66,18 @@
 ---@field pattern? "plus"|"box"|afterglow.OfTime  Where the four samples lie: beside, above and below, or at the corners. default "plus"
 ---@field brightness? "max"|"luma"|afterglow.OfTime  What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B. default "max"
 
+---Text over the picture: the number of the frame, a time code, a name.
+---@class afterglow.settings.burn_in : afterglow.EntryKeys
+---@field text? string|afterglow.OfTime  Up to 256 letters, with "\n" between lines. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic. default ""
+---@field start? string|afterglow.OfTime  {timecode} at time 0. "01:00:00;00" drops numbers, at 29.97 and 59.94 frames a second. default "00:00:00:00"
+---@field position? number[]|afterglow.Moving  Where the text is: {0, 0} in the upper left corner, {1, 1} in the lower right. Its lines are flush accordingly. {x, y}, each 0…1, default {0.5, 1}
+---@field size? number|afterglow.Moving  Height of a line, as a share of the picture's height. Less where the text would not fit. 0.005…1, default 0.05
+---@field margin? number|afterglow.Moving  From the picture's border, as a share of its height. 0…0.5, default 0.03
+---@field color? number[]|string|afterglow.Moving  The letters; display-linear. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field background? number[]|string|afterglow.Moving  The box and the outline; display-linear. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field box? number|afterglow.Moving  How opaque the box is. 0: none. 0…1, default 0.7
+---@field outline? number|afterglow.Moving  Width of a line around the letters, as a share of a line's height. 0: none. 0…0.1, default 0
+
 ---Slope, offset, power and saturation of an ASC CDL.
 ---@class afterglow.settings.cdl : afterglow.EntryKeys
 ---@field file? string|afterglow.OfTime  A correction in a file, beside the preset or on the search path. None: the settings alone. default ""
@@ -525,6 +537,7 @@
 ---@field bloom fun(settings: afterglow.settings.bloom): afterglow.Entry  Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@field bokeh_blur fun(settings: afterglow.settings.bokeh_blur): afterglow.Entry  Blurs the picture as a lens out of focus: bright points become discs or polygons.
 ---@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow, as its source makes it: hard linear threshold, four-sample blur down and up, added to the picture. Its glow has corners; that of bloom is round.
+---@field burn_in fun(settings: afterglow.settings.burn_in): afterglow.Entry  Text over the picture: the number of the frame, a time code, a name.
 ---@field cdl fun(settings: afterglow.settings.cdl): afterglow.Entry  Slope, offset, power and saturation of an ASC CDL.
 ---@field channel_mixer fun(settings: afterglow.settings.channel_mixer): afterglow.Entry  Mixes red, green and blue into new channels; what would be negative is black.
 ---@field chromatic_aberration fun(settings: afterglow.settings.chromatic_aberration): afterglow.Entry  Colour fringes that grow towards the corners.

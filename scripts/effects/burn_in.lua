@@ -45,7 +45,7 @@ return fx.effect {
   doc = "Text over the picture: the number of the frame, a time code, a name.",
   at = "after_post_process", order = 220, space = "display",
   settings = {
-    text = fx.text { default = "", doc = "Up to 256 letters, with \"\\n\" between lines. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic." },
+    text = fx.text { default = "{frame}", doc = "Up to 256 letters, with \"\\n\" between lines. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic; \"\": none." },
     start = fx.text { default = "00:00:00:00", doc = "{timecode} at time 0. \"01:00:00;00\" drops numbers, at 29.97 and 59.94 frames a second." },
     position = fx.vec2 { min = 0, max = 1, default = { 0.5, 1 }, doc = "Where the text is: {0, 0} in the upper left corner, {1, 1} in the lower right. Its lines are flush accordingly." },
     size = fx.float { min = 0.005, max = 1, default = 0.05, doc = "Height of a line, as a share of the picture's height. Less where the text would not fit." },

@@ -46,7 +46,7 @@ TEST_F(Effects, BurnInAgrees) {
                                             .box = 0.3,
                                             .outline = 0.1})},
                    {.full = 1e-3, .fused = 1e-5, .half = 2e-2});
-  expect_skipped("fx.burn_in {}", "text is empty");
+  expect_skipped("fx.burn_in { text = \"\" }", "text is empty");
 }
 
 /// What is made of a text in place of one without braces.
