@@ -9,10 +9,13 @@
 
 namespace afterglow {
 
-/// "scene-linear light", "scene-linear light to display-linear".
+/// "scene-linear light", "scene-linear light to display-linear", "scene-linear light to values of another space".
 inline std::string space_text(const EntrySpace& space) {
-  std::string out = std::string(space_name(space.before)) + " light";
-  if (space.behind != space.before) out += std::string(" to ") + space_name(space.behind);
+  const auto name = [](LightSpace of) -> std::string {
+    return of == LightSpace::other ? "values of another space" : space_name(of);
+  };
+  std::string out = name(space.before) + (space.before == LightSpace::other ? "" : " light");
+  if (space.behind != space.before) out += " to " + name(space.behind);
   return out;
 }
 

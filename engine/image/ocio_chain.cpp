@@ -83,6 +83,12 @@ Side side_of(const OCIO::Config& config, const char* key, const std::string& nam
       space_names(config), {});
 }
 
+/// Numbers that are no colours: OpenColorIO leaves them as they are, on either side of a change.
+bool is_data(const OCIO::Config& config, const std::string& space) {
+  const auto found = config.getColorSpace(space.c_str());
+  return found && found->isData();
+}
+
 void add_matrix(OCIO::GroupTransform& group, OCIO::TransformDirection direction) {
   const auto matrix = OCIO::MatrixTransform::Create();
   matrix->setMatrix(kAp0FromRec709.data());
@@ -169,9 +175,10 @@ OCIO::ConstGroupTransformRcPtr ocio_chain(const OCIO::Config& config, const Ocio
   }
   const Side from = side_of(config, "from", request.from);
   check_looks(config, from.space, request.looks);
-  if (from.matrix) add_matrix(*group, OCIO::TRANSFORM_DIR_FORWARD);
   if (request.to_space) {
     const Side to = side_of(config, "to", request.to);
+    const bool bypassed = is_data(config, from.space) || is_data(config, to.space);
+    if (from.matrix && !bypassed) add_matrix(*group, OCIO::TRANSFORM_DIR_FORWARD);
     if (!request.looks.empty()) {
       group->appendTransform(look_between(from.space, to.space, request.looks));
     } else {
@@ -180,14 +187,16 @@ OCIO::ConstGroupTransformRcPtr ocio_chain(const OCIO::Config& config, const Ocio
       change->setDst(to.space.c_str());
       group->appendTransform(change);
     }
-    if (to.matrix) add_matrix(*group, OCIO::TRANSFORM_DIR_INVERSE);
+    if (to.matrix && !bypassed) add_matrix(*group, OCIO::TRANSFORM_DIR_INVERSE);
   } else {
+    const std::string display = display_of(config, request), name = view_of(config, request, display);
+    const char* shown = config.getDisplayViewColorSpaceName(display.c_str(), name.c_str());
+    if (from.matrix && !is_data(config, shown)) add_matrix(*group, OCIO::TRANSFORM_DIR_FORWARD);
     if (!request.looks.empty()) group->appendTransform(look_between(from.space, from.space, request.looks));
     const auto view = OCIO::DisplayViewTransform::Create();
-    const std::string display = display_of(config, request);
     view->setSrc(from.space.c_str());
     view->setDisplay(display.c_str());
-    view->setView(view_of(config, request, display).c_str());
+    view->setView(name.c_str());
     view->setLooksBypass(!request.looks.empty());
     group->appendTransform(view);
   }

@@ -83,10 +83,10 @@ const std::vector<InvariantKind>& invariant_kinds();
 /// "mean (within 0.001; for some settings)".
 std::string invariant_text(const InvariantSchema& hold);
 
-/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1. Both
-/// linear.
-enum class LightSpace { any, scene, display };
-/// "scene-linear", "display-linear", "any".
+/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1, both
+/// linear; or the values of some other space: other primaries, a logarithm.
+enum class LightSpace { any, scene, display, other };
+/// "scene-linear", "display-linear", "other", "any".
 const char* space_name(LightSpace space);
 
 /// What light an effect is made for, and what it makes of it.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/text.h"
 #include "script/composite.h"
@@ -12,7 +13,8 @@
 namespace afterglow {
 
 const char* space_name(LightSpace space) {
-  return space == LightSpace::scene ? "scene-linear" : space == LightSpace::display ? "display-linear" : "any";
+  constexpr const char* kNames[] = {"any", "scene-linear", "display-linear", "other"};
+  return kNames[static_cast<std::size_t>(space)];
 }
 
 bool ends_in_view(const std::vector<EntrySpace>& spaces) {
@@ -26,7 +28,7 @@ namespace script {
 namespace {
 
 const std::vector<std::string>& space_names() {
-  static const std::vector<std::string> all{"scene", "display"};
+  static const std::vector<std::string> all{"scene", "display", "other"};
   return all;
 }
 
@@ -34,7 +36,7 @@ LightSpace space_of(const std::string& what, const Value& given, const KeyPath& 
   if (given.kind == Value::Kind::nothing) return LightSpace::any;
   for (std::size_t i = 0; i < space_names().size(); ++i)
     if (given.kind == Value::Kind::text && given.text == space_names()[i])
-      return i == 0 ? LightSpace::scene : LightSpace::display;
+      return std::array{LightSpace::scene, LightSpace::display, LightSpace::other}[i];
   throw failure(fmt::format("{} = {} is no space", what, given.shown()), place, join(space_names()),
                 given.kind == Value::Kind::text ? nearest_name(given.text, space_names()) : "");
 }
@@ -110,7 +112,7 @@ namespace {
 /// Light on its way through a stack.
 struct Light {
   LightSpace space = LightSpace::scene;
-  std::string maker{};  ///< of display light
+  std::string maker{};  ///< of display light, and of values of another space
 };
 
 class Tracer {
@@ -141,11 +143,24 @@ class Tracer {
     return light;
   }
 
+  static bool comes_back(const EntrySpace& space, const Light& light) {
+    return space.use.needs == LightSpace::other && light.space == LightSpace::other;
+  }
+
   Light through(std::size_t i, const Light& light) {
     EntrySpace& space = out_[i];
     if (space.use.needs == LightSpace::scene && light.space == LightSpace::display)
       space.warning = fmt::format("'{}' is made for scene-linear light, but '{}' before it makes display-linear light",
                                   runs_[i].entry.name, light.maker);
+    const bool shows = space.use.makes == LightSpace::display;
+    if (space.use.needs == LightSpace::scene && light.space == LightSpace::other && shows)
+      space.warning =
+          fmt::format("'{}' is made for scene-linear light, but '{}' before it makes values of another space",
+                      runs_[i].entry.name, light.maker);
+    if (const auto& entry = runs_[i].entry; comes_back(space, light) && !entry.overtakes.empty())
+      space.warning = fmt::format(
+          "'{}' comes back from what '{}' makes before '{}', which is written between them, runs: `order` says when",
+          entry.name, light.maker, entry.overtakes);
     return space.use.makes == LightSpace::any ? light : Light{space.use.makes, runs_[i].entry.name};
   }
 

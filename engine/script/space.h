@@ -10,7 +10,7 @@
 
 namespace afterglow::script {
 
-/// Reads `space` of fx.effect: "scene", "display", { needs = …, makes = … }, or a function of the settings that returns
+/// Reads `space` of fx.effect: "scene", "display", "other", { needs = …, makes = … }, or a function of the settings that returns
 /// one of these. Mistakes are noted in `table`.
 void read_space(lua_State* lua, TableReader& table, Effect& effect);
 

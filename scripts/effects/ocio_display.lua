@@ -11,7 +11,8 @@ local fx = require "afterglow"
 return fx.effect {
   name = "ocio_display",
   doc = "The view of an OpenColorIO configuration, in place of a tone curve.",
-  at = "post_process", order = 200, alpha = "straight", space = { needs = "scene", makes = "display", view = true },
+  at = "post_process", order = 200, alpha = "straight",
+  space = function(s) return { needs = s.from == "" and "scene" or "other", makes = "display", view = true } end,
   settings = {
     config = fx.file { extensions = { "ocio" }, doc = "The configuration: beside the preset or on the search path. None: the one that $OCIO names." },
     display = fx.text { doc = "Display. None: the configuration's default." },

@@ -9,7 +9,9 @@ return fx.effect {
   doc = "Colours from one space of an OpenColorIO configuration to another, with looks.",
   at = "post_process", order = 150, alpha = "straight",
   space = function(s)
-    if s.from == "" then return "scene" end
+    local needs, makes = s.from == "" and "scene" or "other", s.to == "" and "scene" or "other"
+    if s.inverse then needs, makes = makes, needs end
+    return { needs = needs, makes = makes }
   end,
   settings = {
     config = fx.file { extensions = { "ocio" }, doc = "The configuration: beside the preset or on the search path. None: the one that $OCIO names." },

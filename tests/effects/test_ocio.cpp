@@ -195,6 +195,8 @@ TEST_F(Effects, OcioFindsTheWorkingSpaceByItsRole) {
     text.assign(std::istreambuf_iterator<char>(in), {});
   }
   for (std::size_t at; (at = text.find("lin_rec709")) != std::string::npos;) text.replace(at, 10, "lin_other");
+  text.insert(text.find("    - !<View> {name: ACES,"), "    - !<View> {name: Numbers, colorspace: numbers}\n");
+  text += "  - !<ColorSpace> {name: numbers, isdata: true}\n";
   write_test_file("nameless.ocio", text);
   write_old_studio();
   const std::string settings = "view = \"log affine\" }";
@@ -202,6 +204,25 @@ TEST_F(Effects, OcioFindsTheWorkingSpaceByItsRole) {
   const auto by_role = run_stack("fx.ocio_display { config = \"nameless.ocio\", " + settings, scene, Way::plain).result;
   for (std::size_t i = 0; i < by_name.size(); ++i)
     EXPECT_NEAR(by_role[i], by_name[i], 1e-5 * std::max(1.0F, std::abs(by_name[i])));
+  // Data are nobody's colours: no matrix stands before or behind them.
+  std::vector<float> as_it_is;
+  for (const auto& pixel : scene.source.pixels)
+    for (int c = 0; c < 4; ++c) as_it_is.push_back(static_cast<float>(pixel[c]));
+  for (const char* change : {"to = \"numbers\"", "from = \"numbers\""}) {
+    const Made made =
+        run_stack(fmt::format("fx.ocio_transform {{ config = \"nameless.ocio\", {} }}", change), scene, Way::plain);
+    EXPECT_LE(off_by(made.result, as_it_is).most, 1e-6) << change;
+  }
+  const auto numbers = [&](const std::string& config, const std::string& view) {
+    return run_stack(fmt::format("fx.ocio_display {{ config = \"{}\", view = \"{}\" }}", config, view), scene,
+                     Way::plain)
+        .result;
+  };
+  const auto raw = numbers("nameless.ocio", "Numbers");
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const double want = i % 4 == 3 ? as_it_is[i] : srgb_to_linear(std::max(as_it_is[i], 0.0F));
+    EXPECT_NEAR(raw[i], want, 1e-4 * std::max(1.0, want));
+  }
   EXPECT_THAT(build_error("fx.ocio_display { config = \"old.ocio\", from = \"raww\" }", scene),
               testing::HasSubstr("did you mean 'raw'?"));
 }

@@ -44,10 +44,10 @@ TEST(DeclareMessages, Effects) {
   EXPECT_EQ(declared("  needs = \"depth\","),
             "effects/glow.lua:3: error: fx.effect: needs = \"depth\" is not a list of inputs; allowed: { \"depth\" }");
   EXPECT_EQ(declared("  space = \"scen\","),
-            "effects/glow.lua:3: error: fx.effect: space = \"scen\" is no space; allowed: scene, display; did you mean "
+            "effects/glow.lua:3: error: fx.effect: space = \"scen\" is no space; allowed: scene, display, other; did you mean "
             "'scene'?");
   EXPECT_EQ(declared("  space = {\n   makes = 1 },"),
-            "effects/glow.lua:4: error: fx.effect: space: makes = 1 is no space; allowed: scene, display");
+            "effects/glow.lua:4: error: fx.effect: space: makes = 1 is no space; allowed: scene, display, other");
   EXPECT_EQ(
       declared("  space = {\n   make = \"scene\" },"),
       "effects/glow.lua:4: error: fx.effect: space has no 'make'; allowed: makes, needs, view; did you mean 'makes'?");

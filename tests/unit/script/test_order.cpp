@@ -162,6 +162,34 @@ TEST_F(Order, LightIsFollowedThroughGroupsAndMixes) {
   EXPECT_THAT(found[3].warning, testing::HasSubstr("is made for scene-linear light"));
 }
 
+TEST_F(Order, WhatIsWrittenBetweenTwoChangesOfSpaceRunsBetweenThem) {
+  scene.effect("to", "order = 10, space = { makes = \"other\" }, build = function(g, s, source) return source end,");
+  scene.effect("from",
+               "order = 10, space = { needs = \"other\", makes = \"scene\" },"
+               " build = function(g, s, source) return source end,");
+  scene.effect("grade", "order = 20, space = \"scene\", build = function(g, s, source) return source end,");
+  scene.effect("view",
+               "order = 30, space = { needs = \"scene\", makes = \"display\" },"
+               " build = function(g, s, source) return source end,");
+  const auto warnings = [&](const std::string& entries) {
+    scene.stack(entries);
+    auto preset = scene.load();
+    EXPECT_TRUE(preset.ok());
+    std::vector<std::string> out;
+    const auto spaces = preset->spaces();
+    for (const auto& space : *spaces)
+      if (!space.warning.empty()) out.push_back(space.warning);
+    return out;
+  };
+  EXPECT_THAT(warnings("fx.to {}, fx.grade {}, fx.from {}, fx.view {}"),
+              ElementsAre("'from' comes back from what 'to' makes before 'grade', which is written between them, runs: "
+                          "`order` says when"));
+  EXPECT_THAT(warnings("fx.to {}, fx.grade { order = 10 }, fx.from {}, fx.view {}"), testing::IsEmpty());
+  EXPECT_THAT(warnings("fx.from {}, fx.grade {}, fx.view {}"), testing::IsEmpty()) << "the picture's own space";
+  EXPECT_THAT(warnings("fx.to {}, fx.grade {}, fx.view {}"),
+              ElementsAre("'view' is made for scene-linear light, but 'to' before it makes values of another space"));
+}
+
 TEST_F(Order, AGroupHasWhatItDoesNotSayFromItsFirstEffect) {
   scene.effect("late", "at = \"after_post_process\", order = 7, build = function(g, s, source) return source end,");
   const auto place = [&](const std::string& keys, const std::vector<Override>& overrides = {}) {
