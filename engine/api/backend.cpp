@@ -113,7 +113,16 @@ void Backend::forget_what_went(const Stack* before) {
   if (&now == before && now.programs()->work()) return;
   prepared_ = false;
   build_.reset();
+  seen_.reset();
   last_ = {};
+}
+
+/// The last frame, by what the stack says now; null before there is one.
+const Build* Backend::seen() {
+  if (build_) return build_.get();
+  if (!seen_ && shape_)
+    if (auto build = source_->evaluate(*shape_)) seen_ = *std::move(build);
+  return seen_.get();
 }
 
 Result<void> Backend::prepare(const Shape& shape) {
@@ -124,6 +133,8 @@ Result<void> Backend::prepare(const Shape& shape) {
 }
 
 Result<std::shared_ptr<const Build>> Backend::evaluate(const Shape& shape) {
+  shape_ = shape;
+  seen_.reset();
   AFTERGLOW_TRY(auto build, source_->evaluate(shape));
   if (const std::string& space = preset().input_space(); !space.empty())
     diagnostics_.warn_once(

@@ -105,9 +105,10 @@ class Backend {
   const SharedDevice& device() const { return *device_; }
   Diagnostics& diagnostics() { return diagnostics_; }
   Preset& preset() const { return source_->stack().preset(); }
-  /// As they are in the frame that was prepared last; before there is one, for no frame in particular.
-  const std::vector<StackEntry>& entries() const { return build_ ? *build_->entries : preset().entries(); }
-  const Explanation& explanation() const { return build_ ? *build_->explanation : preset().explanation(); }
+  /// As they are in the frame that was prepared last, or would be by now; before there is one, for no frame in
+  /// particular.
+  const std::vector<StackEntry>& entries() { return seen() ? *seen()->entries : preset().entries(); }
+  const Explanation& explanation() { return seen() ? *seen()->explanation : preset().explanation(); }
   /// Of the same frame: how many earlier frames it needs. 0 before there is one.
   int pre_roll() const;
 
@@ -137,6 +138,7 @@ class Backend {
   Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
   Result<void> set_all(Given all, MustFit must_fit);
   class Forgetting;
+  const Build* seen();
   void forget_what_went(const Stack* before);
   Result<std::shared_ptr<const Build>> evaluate(const Shape& shape);
   Result<void> prepare_frame(const Shape& shape);
@@ -149,7 +151,9 @@ class Backend {
   std::unique_ptr<Renderer> renderer_;  // first to go: it waits for what is in flight
   bool prepared_ = false;
   // Of the last frame.
+  std::optional<Shape> shape_;
   std::shared_ptr<const Build> build_;
+  std::shared_ptr<const Build> seen_;  ///< by what was set since
   std::vector<Skipped> skipped_;
   FrameReport last_;
   std::uint64_t clamped_ = 0;

@@ -43,31 +43,44 @@ class Loaded : public Source {
     wanted.preset.overrides = given.overrides;
     wanted.preset.arguments = given.arguments;
     wanted.preset.must_fit = must_fit;
-    return load(wanted);
+    return load(wanted, false);
   }
   Result<bool> update() override { return false; }
   Result<void> reload(const std::optional<std::string>& text) override {
     StackOptions wanted = options_.stack;
     if (text) wanted.preset.text = *text;
     wanted.preset.record = FileRecord::keeping();
-    return load(wanted);
+    return load(wanted, true);
   }
-  Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override { return stack_->evaluate(shape.context); }
+  Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override {
+    shape_ = shape;
+    return stack_->evaluate(shape.context);
+  }
 
  private:
-  Result<void> load(const StackOptions& wanted) {
+  /// `anew`: shaders may be others.
+  Result<void> load(const StackOptions& wanted, bool anew) {
     loading_ = true;
-    auto loaded = Stack::load(options_.preset, wanted, said_);
+    auto loaded = tried(wanted, anew);
     loading_ = false;
     printed_.end(loaded.ok());
     AFTERGLOW_TRY(auto later, std::move(loaded));
-    later->use(*device_.device, !options_.commands);
-    if (stack_) later->take_over(*stack_, true);
+    if (stack_) later->take_over(*stack_, !later->build());
     stack_ = std::move(later);
     options_.stack = wanted;
     options_.stack.preset.leave_out_unfit = true;  // the preset may come to be another one
     options_.stack.preset.must_fit = MustFit::nothing;
     return {};
+  }
+
+  /// A stack that does for frames like the last one: tables are read for a frame alone, and shaders compiled.
+  Result<std::unique_ptr<Stack>> tried(const StackOptions& wanted, bool anew) {
+    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, said_));
+    later->use(*device_.device, !options_.commands);
+    if (!shape_) return later;
+    AFTERGLOW_TRY(auto build, later->evaluate(shape_->context));
+    if (anew) AFTERGLOW_CHECK(later->prepare(request_for(std::move(build), shape_->encoding, shape_->region)));
+    return later;
   }
 
   /// Each setting that is set runs the preset again, which prints what it printed before.
@@ -82,13 +95,17 @@ class Loaded : public Source {
   Diagnostics said_{[this](Severity severity, const std::string& message) { tell(severity, message); }};
   NewMessages printed_;
   bool loading_ = false;
+  std::optional<Shape> shape_;  ///< of the last frame
   std::unique_ptr<Stack> stack_;
 };
 
 /// Built on a thread of the library's when files change.
 class Followed : public Source {
  public:
-  Followed(const BackendOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
+  Followed(const BackendOptions& options, Diagnostics& diagnostics)
+      : options_(options),
+        diagnostics_(diagnostics),
+        given_{options.stack.preset.overrides, options.stack.preset.arguments} {}
 
   Result<void> open(SharedDevice& device) {
     if (!options_.stack.preset.arguments.empty()) AFTERGLOW_CHECK(attempt(options_.stack.preset));
@@ -112,9 +129,16 @@ class Followed : public Source {
     wanted.must_fit = must_fit;
     const auto fits = attempt(wanted);
     if (!fits && !is_of_the_files(fits.error())) return fits.error();
-    live_->set_overrides(given.overrides, given.arguments);
-    if (fits) return settle();
-    live_->settle();  // the files are broken, which `update` tells; what is set counts with the next good edit
+    const auto error = built_with(given);
+    // What a frame reads is found out by building for one.
+    const auto before = fits && error ? built_with(given_) : error;
+    if (error && (!before || before->text() != error->text())) {
+      (void)settle();
+      return *error;
+    }
+    given_ = given;
+    if (!error) return settle();
+    (void)built_with(given);  // the files are broken, which `update` tells; what is set counts with the next good edit
     return {};
   }
 
@@ -167,6 +191,12 @@ class Followed : public Source {
     const auto opens = attempt(alone);
     return !opens && opens.error().text() == error.text();
   }
+  /// What is wrong with a build for these.
+  std::optional<Error> built_with(const Given& given) {
+    live_->set_overrides(given.overrides, given.arguments);
+    live_->settle();
+    return live_->status().error;
+  }
   Result<void> settle() {
     live_->settle();
     if (live_->update()) tell_messages();
@@ -191,6 +221,7 @@ class Followed : public Source {
   BackendOptions options_;
   Diagnostics& diagnostics_;
   mutable Diagnostics silent_;  ///< messages of builds come with the status of the one that is shown
+  Given given_;
   std::unique_ptr<LiveStack> live_;
   std::optional<BuildContext> context_;
   std::optional<DisplayEncoding> encoding_;

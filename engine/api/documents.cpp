@@ -55,7 +55,7 @@ std::string device_document(const Device& device) {
                      {"validation_messages", device.validation_messages()}});
 }
 
-std::string settings_document(const Backend& backend) {
+std::string settings_document(Backend& backend) {
   Json out = Json::array();
   for (const auto& entry : backend.entries()) {
     Json item{{"name", entry.name},       {"effect", entry.effect}, {"at", entry.at},    {"order", entry.order},
@@ -86,7 +86,7 @@ std::string settings_document(const Backend& backend) {
   return dumped(out);
 }
 
-std::string arguments_document(const Backend& backend) {
+std::string arguments_document(Backend& backend) {
   Json out = Json::array();
   for (const auto& argument : backend.preset().arguments()) {
     Json item = setting_json(argument.schema);
@@ -97,7 +97,7 @@ std::string arguments_document(const Backend& backend) {
   return dumped(out);
 }
 
-std::string explain_document(const Backend& backend) {
+std::string explain_document(Backend& backend) {
   const Explanation& explanation = backend.explanation();
   const std::vector<Skipped> skipped = backend.report().skipped;
   Json out{{"name", backend.preset().name()},

@@ -167,6 +167,10 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     runtime.depends.files.emplace(name, "");
     return name;
   }
+  if (const auto known = runtime.assets.found.find(name); known != runtime.assets.found.end()) {
+    runtime.depends.files.emplace(known->second, name);
+    return known->second;
+  }
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
   if (!is_safe_entry(name, 8))
@@ -179,7 +183,7 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     if (own && !lies_in(file, root))
       fail_at(lua, what, {"file", name, fmt::format("is a link that leads out of {}", root.string()), kAllowed, {}});
     runtime.depends.files.emplace(file, name);
-    return file;
+    return runtime.assets.found[name] = file;
   }
   fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
 }

@@ -300,6 +300,106 @@ TEST_F(ReloadTest, EditsOfAFollowedFileAreTakenByUpdate) {
   EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
 }
 
+const std::string kDark = "LUT_1D_SIZE 2\n0 0 0\n0.25 0.25 0.25\n";
+
+/// What is set while a table is broken counts from the next good edit on, and can be taken back.
+TEST_F(ReloadTest, WhatIsSetWhileATableIsBrokenIsKept) {
+  write("dark.cube", kDark);
+  look("fx.gain { amount = 2 }, fx.lut { file = \"dark.cube\" }");
+  Waker waker;
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.follow = true;
+  options.wake = Waker::wake;
+  options.user = &waker;
+  const StackPtr stack = this->stack(options);
+  const float dark = first_sample(stack);
+  EXPECT_LT(dark, 0.5f);
+  write("dark.cube", "garbage");
+  ASSERT_TRUE(update(stack, waker));
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("lut.opacity"), 0.5)));
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 3)));
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), str("gain.amount"))));
+  EXPECT_EQ(first_sample(stack), dark) << "the last good one";
+  write("dark.cube", kDark + "\n");
+  while (!update(stack, waker) && first_sample(stack) == dark) continue;
+  EXPECT_FLOAT_EQ(first_sample(stack), (1.0f + dark) / 2);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str(nullptr))));
+  EXPECT_EQ(first_sample(stack), dark);
+}
+
+/// A file that is gone, or names none: the last good look runs on.
+TEST_F(ReloadTest, FilesThatAreNotThereLeaveTheLastGoodLook) {
+  for (const bool follow : {false, true}) {
+    SCOPED_TRACE(follow);
+    write("dark.cube", kDark);
+    look("fx.gain { amount = 2 }, fx.lut { file = \"dark.cube\" }");
+    Waker waker;
+    afterglow_stack_options options = afterglow_stack_options_default();
+    options.follow = follow;
+    options.wake = follow ? Waker::wake : nullptr;
+    options.user = &waker;
+    const StackPtr stack = this->stack(options);
+    const float dark = first_sample(stack);
+    const ErrorPtr refused(afterglow_stack_set_text(stack.get(), str("lut.file"), str("none.cube")));
+    EXPECT_EQ(afterglow_error_get_kind(refused.get()), AFTERGLOW_ERROR_SCRIPT);
+    EXPECT_EQ(first_sample(stack), dark);
+    ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 2)));
+    EXPECT_EQ(first_sample(stack), dark) << "the file was not set";
+    fs::remove(folder_ / "dark.cube");
+    EXPECT_EQ(follow && update(stack, waker), follow);
+    EXPECT_EQ(first_sample(stack), dark);
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_EQ(first_sample(stack), dark);
+    write("dark.cube", kDark);
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_EQ(first_sample(stack), dark);
+  }
+}
+
+TEST_F(ReloadTest, AShaderThatIsBrokenIsToldByReload) {
+  const StackPtr stack = this->stack();
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+  write("shaders/gain/gain.glsl",
+        "uniform float amount;\nuniform vec3 tint;\nvec4 apply(vec4 color) { return amuont; }\n");
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+  write("shaders/gain/gain.glsl",
+        "uniform float amount;\nuniform vec3 tint;\n"
+        "vec4 apply(vec4 color) { return vec4(color.rgb * amount * tint * 4.0, color.a); }\n");
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
+}
+
+/// Values are those of the last frame, whatever was set since.
+TEST_F(ReloadTest, ValuesAreThoseOfTheLastFrame) {
+  for (const bool follow : {false, true}) {
+    SCOPED_TRACE(follow);
+    look("fx.gain { amount = function(t) return t.frame end }");
+    afterglow_stack_options options = afterglow_stack_options_default();
+    options.follow = follow;
+    const StackPtr stack = this->stack(options);
+    std::vector<float> source(4, 0.5f), result(4);
+    afterglow_run_info info = afterglow_run_info_default();
+    afterglow_frame frame = afterglow_frame_default();
+    frame.number = 9;
+    info.frame = &frame;
+    info.source = image(source, 1, 1);
+    info.result = image(result, 1, 1);
+    ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+    const auto amount = [&] {
+      double value = 0;
+      EXPECT_TRUE(fine(afterglow_stack_get_number(stack.get(), str("gain.amount"), &value)));
+      return value;
+    };
+    EXPECT_EQ(amount(), 9);
+    ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
+    EXPECT_EQ(amount(), 9);
+    ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str(nullptr))));
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_EQ(amount(), 9);
+  }
+}
+
 TEST_F(ReloadTest, ABrokenPresetCannotBeFollowed) {
   look("fx.gain { amount = \"many\" }");
   afterglow_stack_options options = afterglow_stack_options_default();
