@@ -12,7 +12,7 @@
  *   if (error) fprintf(stderr, "%s\n", afterglow_error_get_text(error).data);
  *
  * Errors: every function that can fail returns NULL, or an error that the caller frees. Then nothing was changed,
- * unless the function says otherwise.
+ * unless the function says otherwise, and what it gives by a pointer is NULL (devices, stacks) or as it was before.
  *
  * Strings: what is passed in is a view; it need not end with NUL and is copied where it is kept. What comes out is a
  * view into the object it was asked of, valid as long as that object; a NUL follows its last byte. All are UTF-8: where
@@ -124,8 +124,8 @@ typedef enum afterglow_severity { AFTERGLOW_NOTE = 0, AFTERGLOW_WARNING = 1 } af
  * call. May be called on any thread, but not on two at once for one object. Must not call back into the library. */
 typedef void (*afterglow_message_callback)(void *user, afterglow_severity severity, afterglow_string message);
 
-/* A stack with `follow` has something for afterglow_stack_update. Called on threads of the library: it only wakes the
- * caller's own. Must not call back into the library. */
+/* A stack with `follow` may have something for afterglow_stack_update, which says what: it is called when a build begins
+ * or ends, too, and after what the caller sets. Called on threads of the library: it only wakes the caller's own. Must not call back into the library. */
 typedef void (*afterglow_wake_callback)(void *user);
 
 /* ---- devices ------------------------------------------------------------------------------------------------------*/
@@ -401,8 +401,9 @@ AFTERGLOW_API afterglow_error *afterglow_stack_reload(afterglow_stack *stack, af
 /* What the preset asks for, and how the settings of the last frame came about, as JSON: {"name", "inputs", "pre_roll",
  * "position", "volumes": […], "entries": [{"name", "effect", "state", "reason", "opacity", "blend", "mask",
  * "composition": […], "settings": [{"name", "default", "preset", "volumes", "override", "final"}]}]}. "composition" is
- * of opacity, blend and mask what "settings" is of the others; "mask" is missing where there is none. "inputs" are the
- * images besides the colour that effects can use: "depth", "normal", "motion", "layer:NAME" (of files alone).
+ * of opacity, blend and mask what "settings" is of the others; "mask" is missing where there is none, and so is
+ * "position". "inputs" are the images besides the colour that effects can use: "depth", "normal", "motion",
+ * "layer:NAME" (of files alone).
  * "pre_roll" is how many earlier frames the last frame needs to be what a whole sequence gives; 0 before there was one.
  * One thread at a time. */
 AFTERGLOW_API afterglow_error *afterglow_stack_explain(const afterglow_stack *stack, afterglow_text **out);
@@ -477,7 +478,7 @@ AFTERGLOW_API VkFormat afterglow_stack_result_format(const afterglow_stack *stac
  * by frame, has made something new. Nothing that was recorded from the stack may be in flight. Pictures that the look
  * has of its own (masks, tables) are brought to the device here: the caller must not use the queue meanwhile. One
  * thread at a time. Errors: device, other (an image is missing or of the wrong size or format), usage (not
- * AFTERGLOW_USE_COMMANDS, nothing prepared). */
+ * AFTERGLOW_USE_COMMANDS, nothing prepared, a format of whole numbers, the source as the result). */
 AFTERGLOW_API afterglow_error *afterglow_stack_bind(afterglow_stack *stack, const afterglow_bindings *bindings);
 
 /* Records the stack. Inputs must be in SHADER_READ_ONLY_OPTIMAL, their writes made visible to sampled reads of fragment

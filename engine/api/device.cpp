@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Devices of the C interface.
+#include <fmt/format.h>
+
+#include <utility>
+
 #include "api/documents.h"
 #include "api/handles.h"
 
@@ -40,6 +44,12 @@ afterglow_error* afterglow_device_adopt(const afterglow_adopted_device* adopted,
     if (!out) return usage("afterglow_device_adopt: out is NULL");
     *out = nullptr;
     AFTERGLOW_TRY(const auto given, take(adopted, afterglow_adopted_device_default(), "afterglow_adopted_device"));
+    const std::pair<const char*, bool> missing[] = {{"instance", !given.instance},
+                                                    {"physical_device", !given.physical_device},
+                                                    {"device", !given.device},
+                                                    {"queue", !given.queue}};
+    for (const auto& [name, is_missing] : missing)
+      if (is_missing) return usage(fmt::format("afterglow_adopted_device: {} is NULL", name));
     const AdoptedDevice objects{.instance = given.instance,
                                 .physical_device = given.physical_device,
                                 .device = given.device,

@@ -81,6 +81,7 @@ Result<void> run_retry(farm::Job job, const FarmArguments& a, Console& console) 
   AFTERGLOW_TRY(const auto status, farm::status_of(job));
   const auto tasks = farm::tasks_to_retry(job, status);
   if (!tasks.empty()) {
+    AFTERGLOW_CHECK(farm::check_packed(job));
     for (const auto& [given, kept] :
          {std::pair(&a.needs.partition, &job.needs.partition), std::pair(&a.needs.time, &job.needs.time),
           std::pair(&a.needs.memory, &job.needs.memory)})

@@ -232,6 +232,14 @@ void discard_job(const Job& job) {
 }
 
 Result<void> check_packed(const Job& job) {
+  constexpr std::string_view kLock = "--locked=";
+  for (const std::string& word : job.run) {
+    if (!word.starts_with(kLock)) continue;
+    const fs::path lock = word.substr(kLock.size()), made = lock.parent_path().parent_path();
+    if (is_file(lock) || made == job.folder) continue;
+    return Error{ErrorKind::io, "the job's folder was moved here; move it back, or submit the job anew",
+                 job.folder.string(), 0, made.string()};
+  }
   for (const auto& [name, hash] : job.files) {
     const fs::path file = job.folder / name;
     AFTERGLOW_TRY(const Hash now, hash_file(file));

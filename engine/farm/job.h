@@ -88,7 +88,8 @@ Result<std::string> jobs_text(const Job& job, const FrameListRequest& request, c
 
 /// Removes a job that nobody has begun.
 void discard_job(const Job& job);
-/// Are the packed files what they were? Errors: io, naming the first that is not.
+/// Are the packed files what they were, and the folder where it was? Its words and the names of outputs are of there.
+/// Errors: io, naming the first that is not.
 Result<void> check_packed(const Job& job);
 
 }  // namespace afterglow::farm

@@ -37,6 +37,7 @@ void take_attempt(ChunkStatus& chunk, const AttemptFile& attempt) {
   chunk.state = *attempt.exit_code == 0                  ? State::done
                 : *attempt.exit_code == kInterruptedCode ? State::lost
                                                          : State::failed;
+  chunk.was_done |= chunk.state == State::done;
   chunk.why = *attempt.exit_code == kInterruptedCode ? "it was told to stop" : "";
 }
 
@@ -76,7 +77,8 @@ void take_task(ChunkStatus& chunk, const TaskState& task, bool cancelled) {
     return;
   }
   if (task.state == "COMPLETED") {
-    chunk.state = State::ending;
+    // A try that failed behind one that was done is none of Slurm's.
+    if (chunk.state != State::failed || !chunk.was_done) chunk.state = State::ending;
   } else if (cancelled || task.state == "CANCELLED") {
     chunk.state = State::cancelled;
   } else if (task.state == "FAILED") {

@@ -25,6 +25,7 @@ struct ChunkStatus {
   State state = State::not_begun;
   int tries = 0;
   std::optional<int> exit_code;  ///< of the last try that ended
+  bool was_done = false;         ///< by one of the tries
   std::string node, why;
 };
 

@@ -74,6 +74,24 @@ TEST_F(FarmFaults, ANodeThatDiesLosesNothing) {
   EXPECT_EQ(attempts("out", ".begun").size(), 1u) << "the try that the node took with it";
 }
 
+/// Somebody makes it again by hand, while Slurm still knows that it went well.
+TEST_F(FarmFaults, AChunkThatWasDoneAndFailsLaterHasFailed) {
+  AFTERGLOW_NEEDS_CLUSTER();
+  make_frames("in", 1, 4);
+  ASSERT_EQ(submit({"--chunk", "2"}).exit_code, kDone);
+  ASSERT_EQ(farm({"status", "out", "--wait"}).exit_code, kDone);
+  fs::remove(path("out/shot.0001.exr"));
+  fs::rename(path("in/shot.0001.exr"), path("away.exr"));
+  EXPECT_EQ(farm({"chunk", "out", "0"}).exit_code, kFiles);
+  const Outcome failed = farm({"status", "out"});
+  EXPECT_THAT(failed.out, HasSubstr("1 done, 1 failed"));
+  EXPECT_THAT(failed.out, HasSubstr("shot.0001.exr"));
+  fs::rename(path("away.exr"), path("in/shot.0001.exr"));
+  ASSERT_EQ(farm({"retry", "out"}).exit_code, kDone);
+  EXPECT_EQ(farm({"status", "out", "--wait"}).exit_code, kDone);
+  EXPECT_TRUE(fs::exists(path("out/shot.0001.exr")));
+}
+
 TEST_F(FarmFaults, AProcessThatIsKilledBeginsAgainWhereItWas) {
   AFTERGLOW_NEEDS_CLUSTER();
   make_truth(160);

@@ -272,6 +272,17 @@ TEST_F(FarmFiles, WhatAProcessThatLivesWritesStays) {
   EXPECT_TRUE(fs::exists(mine));
 }
 
+TEST_F(FarmFiles, AFolderThatWasMovedIsTold) {
+  ASSERT_EQ(write_jobs({"--chunk", "5"}).exit_code, kDone);
+  fs::rename(path("out"), path("elsewhere"));
+  const Outcome chunk = farm({"chunk", "elsewhere", "0"});
+  EXPECT_EQ(chunk.exit_code, kFiles);
+  EXPECT_THAT(chunk.err, HasSubstr("the job's folder was moved here; move it back, or submit the job anew; allowed: " +
+                                   path("out/.afterglow-farm").string()));
+  fs::rename(path("elsewhere"), path("out"));
+  EXPECT_EQ(farm({"chunk", "out", "0"}).exit_code, kDone);
+}
+
 TEST_F(FarmFiles, WhatFailsBehindWhatWasDoneHasFailed) {
   ASSERT_EQ(write_jobs({"--chunk", "5"}).exit_code, kDone);
   const auto jobs = nlohmann::json::parse(read("jobs.json"));

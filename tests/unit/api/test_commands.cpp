@@ -160,7 +160,8 @@ TEST_F(CommandsTest, AdoptedDevicesAreChecked) {
   afterglow_device* device = nullptr;
   const afterglow_adopted_device nothing = afterglow_adopted_device_default();
   const ErrorPtr error(afterglow_device_adopt(&nothing, &device));
-  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_DEVICE);
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_THAT(text_of(error.get()), HasSubstr("afterglow_adopted_device: instance is NULL"));
   EXPECT_EQ(device, nullptr);
 }
 
