@@ -98,7 +98,7 @@ afterglow_error* afterglow_stack_set_text(afterglow_stack* stack, afterglow_stri
 afterglow_error* afterglow_stack_set_numbers(afterglow_stack* stack, afterglow_string name, const double* values,
                                              size_t count) {
   return call([&]() -> Result<void> {
-    if (!values || count < 1 || count > 4) return usage("afterglow_stack_set_numbers: 1 to 4 values are possible");
+    if (!values || count < 1 || count > 3) return usage("afterglow_stack_set_numbers: 1 to 3 values are possible");
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < count; ++i) {
       AFTERGLOW_TRY(std::string text, number(values[i]));
@@ -112,7 +112,7 @@ afterglow_error* afterglow_stack_unset(afterglow_stack* stack, afterglow_string 
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_unset"));
     if (!is_given(name)) return backend->unset({});
-    if (name.size == 0) return usage("afterglow_stack_unset: the name is empty; NULL means all settings");
+    if (name.size == 0) return usage("afterglow_stack_unset: the name is empty; without one all settings are unset");
     return backend->unset(text_of(name));
   });
 }

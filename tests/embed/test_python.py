@@ -377,3 +377,12 @@ def test_the_stub_names_what_there_is():
             if not name.startswith("_"):
                 assert f"def {name}(" in stub, name
     assert (pathlib.Path(afterglow.__file__).parent / "py.typed").exists()
+
+
+def test_messages_know_the_module_alone(device, stack):
+    with pytest.raises(afterglow.UsageError, match="^[^:]*: the shape is .*; sides go from 1 to 16384"):
+        stack.run(np.broadcast_to(np.float32(1), (100000, 100000, 3)))  # 112 GiB, if it were copied
+    for wrong in (lambda: afterglow.Stack(device=device), lambda: stack.unset(""), lambda: stack.run(picture(), fps=0)):
+        with pytest.raises(afterglow.UsageError) as raised:
+            wrong()
+        assert "afterglow_" not in str(raised.value)

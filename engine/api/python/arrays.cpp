@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "arrays.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <limits>
+#include <string>
 
 namespace afterglow::python {
 namespace {
@@ -30,12 +31,19 @@ bool is_readable(const py::array& array) {
   return array.shape(0) <= 1 || std::abs(array.strides(0)) >= row;
 }
 
-afterglow_image image_of(py::array& array, const char* name) {
-  const auto limit = std::numeric_limits<std::int32_t>::max();
-  if (array.ndim() < 2 || array.ndim() > 3 || array.shape(0) > limit || array.shape(1) > limit ||
-      (array.ndim() == 3 && array.shape(2) > 4))
+/// Before anything is copied: views of one sample may be of any size.
+void check_shape(const py::array& array, const char* name) {
+  constexpr py::ssize_t kMostSide = 16384;
+  if (array.ndim() < 2 || array.ndim() > 3 || (array.ndim() == 3 && array.shape(2) > 4))
     refuse(std::string(name) + ": the shape is " + shape_text(array) +
            "; allowed: (height, width, channels), with channels next to each other, 4 at most");
+  if (std::max(array.shape(0), array.shape(1)) > kMostSide)
+    refuse(std::string(name) + ": the shape is " + shape_text(array) + "; sides go from 1 to " +
+           std::to_string(kMostSide));
+}
+
+afterglow_image image_of(py::array& array, const char* name) {
+  check_shape(array, name);
   afterglow_image image{};
   image.data = const_cast<void*>(array.data());
   image.height = static_cast<std::int32_t>(array.shape(0));
@@ -57,12 +65,12 @@ Picture input(const py::object& given, const char* name, bool may_be_flat) {
     refuse(std::string(name) + " is an array of " + py::str(array.dtype()).cast<std::string>() +
            (may_be_flat ? "; allowed: numbers"
                         : "; allowed: floats, which are scene-linear light, and uint8, which are sRGB codes"));
+  check_shape(array, name);
   if (!is_known(array.dtype())) array = array.attr("astype")("float32");
   if (array.ndim() == 2 && !may_be_flat)
     refuse(std::string(name) + ": the shape is " + shape_text(array) +
            "; allowed: (height, width, 3) or (height, width, 4)");
-  if (array.ndim() >= 2 && array.ndim() <= 3 && !is_readable(array))
-    array = py::module_::import("numpy").attr("ascontiguousarray")(array);
+  if (!is_readable(array)) array = py::module_::import("numpy").attr("ascontiguousarray")(array);
   Picture out{array, {}};
   out.image = image_of(out.array, name);
   return out;

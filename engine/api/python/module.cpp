@@ -13,6 +13,13 @@ using afterglow::python::PyStack;
 
 namespace {
 
+/// Without the name of a function or structure of the C interface before it.
+std::string plain(std::string message) {
+  const std::size_t begin = message.starts_with("error: ") ? 7 : 0, end = message.find(": ", begin);
+  if (message.compare(begin, 10, "afterglow_") == 0 && end != std::string::npos) message.erase(begin, end + 2 - begin);
+  return message;
+}
+
 /// Raises the class of afterglow/__init__.py that fits the kind.
 void raise(const afterglow::Error& error) {
   const py::module_ module = py::module_::import("afterglow");
@@ -23,7 +30,7 @@ void raise(const afterglow::Error& error) {
                                                             : "Error";
   const py::object type = module.attr(name);
   const auto or_none = [](const std::string& text) { return text.empty() ? py::object(py::none()) : py::str(text); };
-  const py::object raised = type(error.what(), error.message, or_none(error.file),
+  const py::object raised = type(plain(error.what()), plain(error.message), or_none(error.file),
                                  error.line > 0 ? py::object(py::int_(error.line)) : py::none(), or_none(error.allowed),
                                  or_none(error.nearest));
   PyErr_SetObject(type.ptr(), raised.ptr());
