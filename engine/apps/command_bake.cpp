@@ -25,12 +25,28 @@ struct BakeArguments {
   double fps = 24;
 };
 
-/// The settings of an effect that loads the table; empty where none does.
-std::string use_text(const BakeArguments& a, Shaper shaper, const std::string& extension) {
+/// "fx.NAME" of the effect that has these settings; empty where none has.
+std::string effect_for_tables(Console& console) {
+  const auto effects = list_effects(search_path_for({}, {}), console.diagnostics());
+  if (!effects) return {};
+  for (const EffectSchema& effect : *effects) {
+    const auto has = [&](const std::string& name) {
+      return std::ranges::find(effect.settings, name, &SettingSchema::name) != effect.settings.end();
+    };
+    const auto file = std::ranges::find(effect.settings, "file", &SettingSchema::name);
+    if (has("input") && has("output") && file != effect.settings.end() && std::ranges::count(file->choices, "cube") > 0)
+      return "fx." + effect.name + " ";
+  }
+  return {};
+}
+
+/// An effect that loads the table; empty where none does.
+std::string use_text(const BakeArguments& a, Shaper shaper, const std::string& extension, Console& console) {
   if (extension == ".png") return "";
   const char* input = shaper == Shaper::none ? "srgb" : extension == ".clf" ? "linear" : "acescct";
   const std::string file = SettingValue{.type = SettingType::text, .number = {}, .choice = a.output}.text();
-  return fmt::format("in a look: {{ file = {}, input = \"{}\", output = \"srgb\" }}\n", file, input);
+  return fmt::format("in a look: {}{{ file = {}, input = \"{}\", output = \"srgb\" }}\n", effect_for_tables(console),
+                     file, input);
 }
 
 Result<void> run_bake(const BakeArguments& a, Console& console) {
@@ -62,10 +78,11 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
   if (shaper == Shaper::none && brings_down)
     console.warning("the look takes scene light, but the table cuts off what is above 1; --shaper log takes it");
   if (look.preset->may_change() && !a.frame)
-    console.warning("the look may change from frame to frame, a table does not: it is that of frame 1; --frame chooses");
+    console.warning(
+        "the look may change from frame to frame, a table does not: it is that of frame 1; --frame chooses");
   fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
              shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
-  fmt::print("{}", use_text(a, shaper, extension));
+  fmt::print("{}", use_text(a, shaper, extension, console));
   return {};
 }
 
@@ -88,6 +105,7 @@ Command add_bake_command(CLI::App& program) {
       ->check(CLI::IsMember({"none", "log"}))
       ->type_name("SHAPER");
   app->add_option("--frame", arguments->frame, "Number of the frame whose look it is, of looks that move (default 1)")
+      ->check(frame_numbers())
       ->type_name("N");
   app->add_option("--fps", arguments->fps, "Frames a second, for animated presets (default 24)")
       ->transform(frame_rates())

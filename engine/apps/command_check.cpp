@@ -128,8 +128,12 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
   for (const auto& notes : {shadows, notes_of_look})
     for (const auto& note : notes) out += note + "\n";
   const std::string warned = warnings == 0 ? "" : fmt::format(", {} warning{}", warnings, warnings == 1 ? "" : "s");
-  return out + fmt::format("{} effects, {} passes in {} kernels: no errors{}\n", entries.size(),
-                           look.build.graph.passes.size(), look.plan.kernels.size(), warned);
+  const auto counted = [](std::size_t count, const std::string& one, const char* many) {
+    return fmt::format("{} {}{}", count, one, count == 1 ? "" : many);
+  };
+  return out + fmt::format("{}, {} in {}: no errors{}\n", counted(entries.size(), "effect", "s"),
+                           counted(look.build.graph.passes.size(), "pass", "es"),
+                           counted(look.plan.kernels.size(), "kernel", "s"), warned);
 }
 
 std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows,

@@ -119,7 +119,7 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
                    fmt::format("unknown effect '{}'", arguments.name),
                    "afterglow effects",
                    0,
-                   join(names) + "; effects of yours with --path FOLDER",
+                   join(names) + "; effects of yours with --path FOLDER (--path . for this one's)",
                    nearest_name(arguments.name, names)};
     }
   }

@@ -147,6 +147,7 @@ Result<void> play_command(CLI::App& app, const PlayArguments& a, Console& consol
   AFTERGLOW_CHECK(take_settings(app, a));
   keep_standard_output_for({a.report});
   AFTERGLOW_TRY(const PlayerOptions options, a.player());
+  a.preset.tell_of_namesake(options.preset, console.diagnostics());
   AFTERGLOW_CHECK(check_written_files(a, options));
   bool reported = false;
   auto done =

@@ -15,6 +15,7 @@ namespace {
 Result<void> run_run(const RunArguments& a, Console& console) {
   keep_standard_output_for({a.report, a.files.output});
   AFTERGLOW_TRY(const BatchRequest request, a.request());
+  a.preset.tell_of_namesake(request.preset, console.diagnostics());
   if (a.sandbox) {
     AFTERGLOW_CHECK(make_folder(new_folder(a.files.output)));  // what it lies in is out of reach afterwards
     AFTERGLOW_TRY(const Confinement left, sandbox_of(a));

@@ -9,6 +9,8 @@
 #include "apps/options.h"
 #include "apps/output.h"
 #include "apps/text_difference.h"
+#include "core/pack.h"
+#include "core/paths.h"
 #include "core/printable.h"
 #include "edit/write_back.h"
 #include "shader/library.h"
@@ -61,8 +63,19 @@ void warn_of_missing_files(const std::vector<PresetEdit>& edits, const SearchPat
                       tidy_message(edit.value->choice, 100)));
 }
 
+/// Whoever writes a path knows which file it is; a name may mean one that others use too.
+Result<void> check_own(const std::string& given, const std::filesystem::path& file) {
+  if (file == given || !is_of_installation(file) || !pack_of(file, cache_folder()).empty()) return {};
+  const bool own_folder = file.parent_path().filename() == file.stem();  // with effects and shaders of its own
+  return Error{ErrorKind::usage, "comes along with Afterglow and stays as it is: copy it first", given, 0,
+               fmt::format("a file of yours, as `cp {} .` makes one",
+                           own_folder ? "-r " + file.parent_path().string() : file.string())};
+}
+
 Result<void> run_set(const SetArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const auto file, arguments.preset.preset_file());
+  AFTERGLOW_CHECK(check_own(arguments.preset.file, file));
+  arguments.preset.tell_of_namesake(file, console.diagnostics());
   AFTERGLOW_TRY(const PresetOptions options, arguments.preset.options());
   AFTERGLOW_TRY(const auto edits, edits_of(arguments, file, options, console));
   PresetWriter writer(file, options);
@@ -98,6 +111,7 @@ Command add_set_command(CLI::App& program) {
       "that names\n"
       "its place, and nothing is written then. Other files (presets that this one extends, required scripts) stay as "
       "they are.\n"
+      "Presets that come along with Afterglow are not written: copy one first.\n"
       "Prints the lines that changed. Needs no Vulkan device.\n"
       "Example: afterglow set look.lua bloom.intensity=0.4 bloom.mode=additive --reset bloom.scatter");
   return {app, [arguments](Console& console) { return run_set(*arguments, console); }};

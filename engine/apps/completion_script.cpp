@@ -35,6 +35,9 @@ const OptionWords* first_word(const CommandWords& command) {
   return first.positional && !offered(first).empty() ? &first : nullptr;
 }
 
+/// Files may stand there too: a word that is all that is taken, and a command's name, are no files.
+bool takes_files(const OptionWords& option) { return option.choices.empty() && option.names.front() == "PRESET"; }
+
 bool is_folder(const OptionWords& option) { return option.value.starts_with("FOLDER"); }
 
 /// `text` with `before` in front of each of `special`, and its lines made one.
@@ -60,7 +63,8 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
   std::string values, firsts, options;
   for (const auto& command : commands) {
     if (const OptionWords* first = first_word(command))
-      firsts += fmt::format("      {}) words='{}' ;;\n", command.name, join(offered(*first), " "));
+      firsts += fmt::format("      {}) words='{}'{} ;;\n", command.name, join(offered(*first), " "),
+                            takes_files(*first) ? "" : " files=");
     options += fmt::format("    {}) words='{}' ;;\n", command.name, options_of(command));
     for (const auto& option : command.options) {
       if (option.positional || (offered(option).empty() && !is_folder(option))) continue;
@@ -77,7 +81,7 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
   mapfile -t COMPREPLY < <(compgen -d -- "$1")
 }}
 _afterglow() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}} words=
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}} words= files=1
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W '{} --help --version' -- "$word"))
@@ -90,12 +94,17 @@ _afterglow() {{
     case $command in
 {}      *) return 0 ;;
     esac
-    compopt -o filenames 2>/dev/null
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; compgen -f -- "$word")
-    return
+    if [[ -n $files ]]; then
+      compopt -o filenames 2>/dev/null
+      mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; compgen -f -- "$word")
+      return
+    fi
+    compopt +o default 2>/dev/null  # no files where no word fits
   fi
-  case $command in
-{}  esac
+  if [[ $word == -* ]]; then
+    case $command in
+{}    esac
+  fi
   COMPREPLY=($(compgen -W "$words" -- "$word"))
 }}
 complete -o default -F _afterglow afterglow
@@ -125,8 +134,8 @@ std::string zsh_completion(const std::vector<CommandWords>& commands) {
     for (const auto& option : command.options)
       if (!option.positional) cases += " \\\n        " + spec(option);
     if (const OptionWords* first = first_word(command))
-      cases += fmt::format(" \\\n        '1:{}:{{compadd -- {}; _files}}'", first->names.front(),
-                           join(offered(*first), " "));
+      cases += fmt::format(" \\\n        '1:{}:{{compadd -- {}{}}}'", first->names.front(), join(offered(*first), " "),
+                           takes_files(*first) ? "; _files" : "");
     cases += " \\\n        '*:file:_files' ;;\n";
   }
   return fmt::format("#compdef afterglow\n{}", kMade) + fmt::format(R"(_afterglow() {{
@@ -156,9 +165,9 @@ std::string fish_completion(const std::vector<CommandWords>& commands) {
   for (const auto& command : commands)
     if (const OptionWords* first = first_word(command))
       out += fmt::format(
-          "complete -c afterglow -n '__fish_seen_subcommand_from {}; and test (count (commandline -opc)) -eq 2' -a "
+          "complete -c afterglow -n '__fish_seen_subcommand_from {}; and test (count (commandline -opc)) -eq 2'{} -a "
           "{}\n",
-          command.name, text(join(offered(*first), " ")));
+          command.name, takes_files(*first) ? "" : " -f", text(join(offered(*first), " ")));
   for (const auto& command : commands)
     for (const auto& option : command.options) {
       if (option.positional) continue;

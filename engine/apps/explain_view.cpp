@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
@@ -142,8 +143,9 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
 
 std::string explain_text(const ExplainView& view) {
   const Explanation& explanation = *view.look.build.explanation;
-  std::string out = fmt::format("{}: {}, frame {} ({} s)", view.file, view.look.preset->name(),
-                                number_text(view.context.frame), number_text(view.context.time));
+  std::string out =
+      fmt::format("{}: {}, frame {} ({} s)", view.file, view.look.preset->name(), number_text(view.context.frame),
+                  number_text(std::round(view.context.time * 1e4) / 1e4));
   if (explanation.position)
     out += fmt::format(", seen from {} ({})", position_text(*explanation.position), explanation.position_from);
   out += "\n";

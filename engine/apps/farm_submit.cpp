@@ -89,6 +89,7 @@ Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, c
 
 Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console& console) {
   AFTERGLOW_TRY(BatchRequest request, arguments.run.request());
+  arguments.run.preset.tell_of_namesake(request.preset, console.diagnostics());
   PlannedJob out{.files = request.files};
   AFTERGLOW_CHECK(check_streams(request.files));
   AFTERGLOW_TRY(FrameList list, list_frames(request.files, console.diagnostics()));

@@ -22,6 +22,7 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   AFTERGLOW_TRY(PresetOptions options, arguments.options());
   options.note_reads = true;
   AFTERGLOW_TRY(const std::filesystem::path file, arguments.preset_file());
+  arguments.tell_of_namesake(file, console.diagnostics());
   Look look;
   look.shaders = std::make_unique<ShaderLibrary>(search_path_for(file, options.paths));
   AFTERGLOW_TRY(Preset preset, Preset::load(file, options, *look.shaders, console.diagnostics()));

@@ -37,6 +37,14 @@ CLI::Validator above_zero() {
   return {fault, "POSITIVE"};
 }
 
+CLI::Validator frame_numbers() {
+  const auto fault = [](const std::string& text) {
+    const auto number = parse_number<double>(text);
+    return number && std::isfinite(*number) ? std::string() : fmt::format("{} is no number of a frame", text);
+  };
+  return {fault, "N"};
+}
+
 /// "23.976" or, as videos have it, "24000/1001".
 std::optional<double> parse_rate(const std::string& text) {
   const std::size_t slash = text.find('/');
@@ -183,6 +191,15 @@ Result<std::filesystem::path> PresetArguments::preset_file() const {
   if (other && has_pictures(found))
     return Error{ErrorKind::script, "is a picture, not a preset", file, 0, "a Lua file, then the pictures"};
   return found;
+}
+
+void PresetArguments::tell_of_namesake(const std::filesystem::path& found, Diagnostics& diagnostics) const {
+  std::error_code ec;
+  const std::filesystem::path here = file + ".lua";
+  if (found == file || here.has_parent_path() || !std::filesystem::is_regular_file(here, ec)) return;
+  if (std::filesystem::equivalent(here, found, ec)) return;
+  diagnostics.warn_once("namesake", fmt::format("'{}' is {}; {} of this folder is another one: write {} for it", file,
+                                                found.string(), here.string(), here.string()));
 }
 
 void DeviceArguments::add(CLI::App& command) {
@@ -333,7 +350,7 @@ void AssumedPicture::add(CLI::App& command) {
       ->type_name("X,Y,W,H")
       ->group("Picture");
   command.add_option("--frame", frame, "Number of the assumed picture in its sequence (default 1)")
-      ->check(CLI::Number)
+      ->check(frame_numbers())
       ->type_name("N")
       ->group("Picture");
   command.add_option("--fps", fps, "Frames a second, for animated presets (default 24)")

@@ -26,6 +26,8 @@ struct MessageArguments {
 
 /// Numbers above 0. (CLI11's own tells of them as "0.000000 to 1797…", 308 digits.)
 CLI::Validator above_zero();
+/// Takes a finite number, as frames have.
+CLI::Validator frame_numbers();
 
 /// Rates that videos can have (kSlowestRate).
 CLI::Validator frame_rates();
@@ -51,6 +53,8 @@ struct PresetArguments {
   Result<PresetOptions> options() const;
   /// The file that PRESET means: see find_preset_file. Errors: script.
   Result<std::filesystem::path> preset_file() const;
+  /// Warns, once, where PRESET is a name and a file NAME.lua of the current folder was not taken for it.
+  void tell_of_namesake(const std::filesystem::path& found, Diagnostics& diagnostics) const;
 };
 
 /// --layer, --input-space, --gamut, --overscan, --depth, --normal, --motion, --mattes: where the parts of a picture

@@ -2,8 +2,11 @@
 // A run's events on the console.
 #pragma once
 
+#include <memory>
+
 #include "apps/console.h"
 #include "apps/interrupt.h"
+#include "apps/missing_frames.h"
 #include "batch/batch_run.h"
 
 namespace afterglow {
@@ -13,7 +16,9 @@ inline RunEvents run_events(Console& console) {
           .progress = [&console](std::size_t done, std::size_t total, const std::string& label,
                                  double seconds) { console.progress(done, total, label, seconds); },
           .end_progress = [&console] { console.end_progress(); },
-          .failed = [&console](const Error& error) { console.error(error); },
+          .failed = [missing = std::make_shared<MissingFrames>([&console](const Error& error) {
+                       console.error(error);
+                     })](const Error& error) { missing->add(error); },
           .note = [&console](const std::string& text) { console.note(text); },
           .interrupted = interrupted};
 }

@@ -145,6 +145,15 @@ fs::path find_installation() {
   return is_installation(folder) ? folder : fs::path();
 }
 
+bool is_of_installation(const fs::path& preset) {
+  const fs::path installation = find_installation();
+  if (installation.empty()) return false;
+  std::error_code ec;
+  const fs::path inside = fs::weakly_canonical(preset, ec).lexically_relative(fs::weakly_canonical(installation, ec));
+  const std::string folder = inside.empty() ? "" : inside.begin()->string();
+  return folder == "presets" || folder == "packs";
+}
+
 namespace {
 
 std::vector<fs::path> folders_of(const fs::path& preset, FileRecord* record) {

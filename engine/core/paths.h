@@ -55,6 +55,9 @@ struct SearchPath {
 /// what has not been installed. Empty when there is none.
 std::filesystem::path find_installation();
 
+/// Does it come along with Afterglow: is it below presets/ or packs/ of the installation?
+bool is_of_installation(const std::filesystem::path& preset);
+
 /// The folders that belong to a preset: its own; of a preset in `presets/`, also the one above when that holds
 /// `effects/`, `shaders/` or `luts/`.
 std::vector<std::filesystem::path> folders_of_preset(const std::filesystem::path& preset);

@@ -111,12 +111,15 @@ std::vector<std::string> compression_names() {
 
 Error unknown_format(const std::filesystem::path& file, const std::vector<std::string>& known) {
   const std::string extension = lower(file.extension().string());
+  // A name without a point: a folder that is to be made, more likely than a picture.
+  const std::string folder =
+      extension.empty() ? fmt::format("; a folder is written {}/", file.string()) : std::string();
   return {ErrorKind::usage,
           extension.empty() ? "has no extension that tells its format"
                             : fmt::format("'{}' is not a format that is written", extension),
           file.string(),
           0,
-          join(known),
+          join(known) + folder,
           nearest_name(extension, known)};
 }
 

@@ -28,8 +28,6 @@ struct OutputFormat {
 /// Errors: usage (unknown extension; the sample type, the space or the compression is not one of the format's).
 Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options);
 
-/// Of pictures, with the dot.
-std::vector<std::string> picture_extensions();
 /// That the file's extension is none of those that are known.
 Error unknown_format(const std::filesystem::path& file, const std::vector<std::string>& known);
 

@@ -292,9 +292,15 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
   if (ec)
     return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
   if (found.empty()) {
-    const std::string near =
-        others.files > 0 ? ": of " + others.first.filename().string() + " the digits are others" : "";
-    return Error{ErrorKind::io, "no file matches this pattern" + near, shown};
+    Error error{ErrorKind::io, "no file matches this pattern", shown};
+    if (others.files == 0) return error;
+    const std::string name = others.first.filename().string();
+    const std::string middle = name.substr(stem.size(), name.size() - stem.size() - pattern.suffix.size());
+    const auto digits = static_cast<std::size_t>(std::ranges::count_if(middle, is_digit));
+    error.message +=
+        fmt::format(": it has {} digit{}, and {} has {}", pattern.digits, pattern.digits == 1 ? "" : "s", name, digits);
+    error.nearest = pattern.prefix + std::string(digits, '#') + pattern.suffix;
+    return error;
   }
   leave_out_twins(pattern, found, others);
   if (left_out) *left_out = others;

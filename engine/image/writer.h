@@ -100,6 +100,8 @@ std::optional<DisplayCodes> display_codes(const std::filesystem::path& file, con
 Result<void> check_output(const std::filesystem::path& file, const WriteOptions& options);
 /// What some format takes as WriteOptions::compression, without levels.
 std::vector<std::string> compression_names();
+/// Of pictures, with the dot.
+std::vector<std::string> picture_extensions();
 /// Whether pictures or videos have such an extension. Errors: usage.
 Result<void> check_extension(const std::filesystem::path& file);
 /// The format of a picture alone. Errors: usage.

@@ -9,8 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/ascii.h"
 #include "core/text.h"
 #include "script/native.h"
+#include "script/syntax_hint.h"
 
 namespace afterglow::script {
 namespace {
@@ -71,6 +73,29 @@ void add_variables(lua_State* lua, std::vector<std::string>& names) {
   lua_pop(lua, 1);
 }
 
+/// Does a line give this word, and nothing else, to a key: "mode = aces,"? Then it may have been meant as a text.
+bool is_given_alone(std::string_view line, std::string_view word) {
+  if (trim(line).starts_with("local ")) return false;
+  for (std::size_t at = line.find(word); at != std::string_view::npos; at = line.find(word, at + 1)) {
+    const std::string before = trim(line.substr(0, at)), behind = trim(line.substr(at + word.size()));
+    const bool given = before.ends_with('=') && before.size() > 1 &&
+                       std::string_view("=~<>").find(before[before.size() - 2]) == std::string_view::npos;
+    const bool ends =
+        behind.empty() || behind[0] == ',' || behind[0] == '}' || behind[0] == ';' || behind.starts_with("--");
+    if (given && ends && !(at + word.size() < line.size() && is_name_char(line[at + word.size()]))) return true;
+  }
+  return false;
+}
+
+bool may_be_text(lua_State* lua, std::string_view name) {
+  Sandbox& box = Sandbox::of(lua);
+  const Location where = box.caller(lua);
+  if (where.source < 0) return false;
+  const std::string& text = box.sources()[static_cast<std::size_t>(where.source)].text;
+  box.charge(text.size() / 16);
+  return is_given_alone(line_of(text, where.line), name);
+}
+
 // Reads of the table in argument 1 end here for what is not in it.
 int absent_name(lua_State* lua) {
   const std::string library = lua_tostring(lua, lua_upvalueindex(1));
@@ -90,9 +115,15 @@ int absent_name(lua_State* lua) {
   add_keys(lua, 1, names);
   Sandbox::of(lua).charge(100 * (names.size() + 1));
   const std::string shown = tidy_message(name, 60);
+  if (library.empty() && name == "fx")
+    throw failure("nothing here has the name 'fx': begin the file with local fx = require \"afterglow\"");
   if (library.empty())
     throw failure(fmt::format("nothing here has the name '{}'", shown), {},
-                  "variables and functions that stand above this line, and those of the library",
+                  may_be_text(lua, name)
+                      ? fmt::format("words in quotation marks (\"{}\"), and variables and functions "
+                                    "that stand above this line",
+                                    shown)
+                      : "variables and functions that stand above this line, and those of the library",
                   nearest_name(name, names));
   throw failure(fmt::format("there is no {}.{}", library, shown), {}, join(names), nearest_name(name, names));
 }

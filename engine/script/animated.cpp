@@ -65,8 +65,9 @@ int unknown_moment(lua_State* lua) {
 
 void push_moment(lua_State* lua, const BuildContext& context) {
   lua_createtable(lua, 0, 3);
-  const std::pair<const char*, double> fields[] = {
-      {"frame", context.frame}, {"time", context.time}, {"fps", context.fps}};
+  push_frame(lua, context.frame);
+  lua_setfield(lua, -2, "frame");
+  const std::pair<const char*, double> fields[] = {{"time", context.time}, {"fps", context.fps}};
   for (const auto& [name, value] : fields) {
     lua_pushnumber(lua, value);
     lua_setfield(lua, -2, name);
@@ -93,6 +94,14 @@ SettingValue call_function(lua_State* lua, const Animated& given, const std::str
 }
 
 }  // namespace
+
+void push_frame(lua_State* lua, double frame) {
+  constexpr double kMost = 2147483648;
+  if (frame == std::floor(frame) && std::abs(frame) <= kMost)
+    lua_pushinteger(lua, static_cast<lua_Integer>(frame));
+  else
+    lua_pushnumber(lua, frame);
+}
 
 int declare_curve(lua_State* lua) {
   Runtime& runtime = Runtime::of(lua);

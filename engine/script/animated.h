@@ -38,6 +38,10 @@ struct Animated {
   bool moves() const { return curve || function.set(); }
 };
 
+/// The number of a frame: an integer where it is whole, so that `"img." .. t.frame` is "img.7". Beyond 2^31 it stays a
+/// float, for the square of an integer may not run over.
+void push_frame(lua_State* lua, double frame);
+
 /// Reads a value from the stack; functions are kept in the registry.
 Given read_given(lua_State* lua, int index);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/text.h"
 #include "script/animated.h"
@@ -72,15 +73,23 @@ void read_place(TableReader& table, DeclaredEntry& declared) {
                        "1 to 64 letters, digits, '_' and '-'"));
 }
 
-void fail_unknown(TableReader& table, const EffectSchema& schema, const TableReader::Key& key,
+void fail_unknown(lua_State* lua, TableReader& table, const EffectSchema& schema, const TableReader::Key& key,
                   const std::vector<std::string>& others) {
   std::vector<std::string> names;
   for (const auto& setting : schema.settings) names.push_back(setting.name);
   const char* what = table.what().starts_with("fx.mask.") ? "mask" : "effect";
   if (key.position > 0) {
-    table.fail(
-        failure(fmt::format("{} '{}' has a value without a name at position {}", what, schema.name, key.position),
-                {key.name}, join(names)));
+    // What is left of `0,2` behind its comma.
+    table.push(key);
+    const Value value = read_value(lua, -1);
+    lua_pop(lua, 1);
+    const bool digits = value.kind == Value::Kind::number && value.number == std::floor(value.number) &&
+                        table.keys().back().position == 0;
+    const std::string point =
+        digits ? fmt::format(": {}; numbers have a point: 0.{}", value.shown(), value.shown()) : "";
+    table.fail(failure(
+        fmt::format("{} '{}' has a value without a name at position {}{}", what, schema.name, key.position, point),
+        {key.name}, join(names)));
     return;
   }
   std::vector<std::string> near = names;
@@ -122,7 +131,7 @@ void read_settings_of(lua_State* lua, TableReader& table, const EffectSchema& sc
     const auto found =
         std::find_if(schema.settings.begin(), schema.settings.end(), [&](const auto& s) { return s.name == key.name; });
     if (found == schema.settings.end()) {
-      fail_unknown(table, schema, key, others);
+      fail_unknown(lua, table, schema, key, others);
       continue;
     }
     table.push(key);

@@ -29,6 +29,11 @@ int unknown_setting(lua_State* lua) {
   const Value key = read_value(lua, 2);
   std::vector<std::string> names;
   for (const auto& setting : schema.settings) names.push_back(setting.name);
+  static const std::vector<std::string> kOfTheGraph{"filter", "history", "image", "input", "keep",
+                                                    "lookup", "ocio",    "pass",  "skip"};
+  if (std::ranges::count(kOfTheGraph, key.text) > 0)
+    throw failure(fmt::format("effect '{}' has no setting {}; it is one of the graph's", schema.name, key.shown()), {},
+                  "build = function(g, s, source), the graph before the settings");
   throw failure(fmt::format("effect '{}' has no setting {}", schema.name, key.shown()), {}, join(names),
                 nearest_name(key.text, names));
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "script/animated.h"
 #include "script/filter_reader.h"
 #include "script/graph_calls.h"
 #include "script/object.h"
@@ -191,7 +192,7 @@ int graph_index(lua_State* lua) {
   if (key.kind == Value::Kind::text && lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL) return 1;
   const BuildContext& context = graph.context();
   if (name == "frame")
-    lua_pushnumber(lua, context.frame);
+    push_frame(lua, context.frame);
   else if (name == "time")
     lua_pushnumber(lua, context.time);
   else if (name == "fps")

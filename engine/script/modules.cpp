@@ -185,18 +185,36 @@ void check_requirement(const Sandbox& box) {
                        source.path, newer->line}};
 }
 
+/// A script has returned the value on top of the stack. `made`: it has made what it should return.
+ScriptError not_returned(lua_State* lua, const fs::path& file, const char* what, const std::string& function,
+                         bool made) {
+  const Value value = read_value(lua, -1);
+  const std::string shape = fmt::format("fx.{} {{ … }}", function);
+  ScriptError error = failure(fmt::format("{} must return {}, not {}", what, shape, value.shown()));
+  error.error.file = file.string();
+  if (value.kind != Value::Kind::nothing) return error;
+  error.error.allowed = fmt::format("return {}, at the end", shape);
+  const auto& sources = Sandbox::of(lua).sources();
+  const auto source = std::ranges::find(sources, error.error.file, &Source::path);
+  if (!made || source == sources.end()) return error;
+  const std::size_t at = source->text.rfind("fx." + function);
+  if (at == std::string::npos) return error;
+  error.error.line = static_cast<int>(std::ranges::count(std::string_view(source->text).substr(0, at), '\n')) + 1;
+  error.error.message = fmt::format("'return' is missing before fx.{}: {} must return what it makes", function, what);
+  error.error.allowed.clear();
+  return error;
+}
+
 DeclaredStack load_stack(lua_State* lua, const fs::path& file, const std::optional<std::string>& text) {
   Runtime& runtime = Runtime::of(lua);
   std::error_code ec;
   const Loading loading(runtime, "preset " + fs::weakly_canonical(file, ec).string());
+  const std::size_t made_before = runtime.stacks.size();
   load_chunk(lua, file, false, text);
   check_requirement(*runtime.box);
   call(lua, 0, 1);
   const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
-  if (!handle)
-    throw ScriptError{{ErrorKind::script,
-                       fmt::format("a preset must return fx.stack {{ … }}, not {}", read_value(lua, -1).shown()),
-                       file.string()}};
+  if (!handle) throw not_returned(lua, file, "a preset", "stack", runtime.stacks.size() > made_before);
   DeclaredStack stack = runtime.stacks[static_cast<std::size_t>(handle->index)];
   lua_pop(lua, 1);
   return stack;
@@ -274,6 +292,7 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
     Error error{ErrorKind::script, lua_tostring(lua, -1), file.string()};
     box.locate(error, box.take_prefix(error.message));
     name_symbol(error, text);
+    name_missing(error, text);
     throw ScriptError{std::move(error)};
   }
   push_environment(lua);
@@ -336,8 +355,11 @@ int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
     if (nearest.empty()) nearest = nearest_name(name, names);
     const auto library = library_names();
     const bool of_library = std::ranges::find(library, nearest) != library.end();
-    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(of_library ? names : effects),
-                  nearest);
+    const std::string own = is_identifier(name)
+                                ? fmt::format(", and {}/{}.lua beside the preset or below a --path", folder, name)
+                                : std::string();
+    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {},
+                  of_library ? join(names) : "those that `afterglow effects` lists" + own, nearest);
   }
   // An installation may be made of links; what comes with a preset may not reach out of its folder.
   for (const auto& root : runtime.path.user)
@@ -345,15 +367,14 @@ int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
       throw failure(fmt::format("{} '{}' is a link that leads out of {}", what, name, root.string()));
 
   const Loading loading(runtime, folder + "." + name);
+  const std::size_t made_before = runtime.effects.size();
   load_chunk(lua, hits[0]);
   call(lua, 0, 1);
   const Handle* made = to_object<Handle>(lua, -1, kEffectKind);
   const std::string file = hits[0].string();
   if (!made)
-    throw ScriptError{{ErrorKind::script,
-                       fmt::format("{} file must return fx.effect {{ … }}, not {}",
-                                   kind == ScriptKind::mask ? "a mask's" : "an effect's", read_value(lua, -1).shown()),
-                       file}};
+    throw not_returned(lua, hits[0], kind == ScriptKind::mask ? "a mask's file" : "an effect's file", "effect",
+                       runtime.effects.size() > made_before);
   Effect& effect = runtime.effects[static_cast<std::size_t>(made->index)];
   if (effect.schema.name != name)
     throw ScriptError{

@@ -88,6 +88,8 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
     const auto known = names();
     std::string plain = name.ends_with(kExtension) ? name.substr(0, name.size() - kExtension.size()) : name;
     if (plain.starts_with(kFolder)) plain.erase(0, kFolder.size());
+    if (is_safe_name(plain))
+      error.allowed = fmt::format("shaders/{}.glsl beside the preset, or on the search path", plain);
     error.nearest = std::ranges::count(known, plain) > 0 ? plain : nearest_name(plain, known);
     return error;
   }

@@ -85,7 +85,11 @@ Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>&
   for (const auto& name : names) {
     if (std::ranges::find(known, name) != known.end()) continue;
     if (auto error = effect_error(path, name)) return *std::move(error);
-    return Error{ErrorKind::usage,         fmt::format("unknown effect '{}'", name), {}, 0, join(known),
+    return Error{ErrorKind::usage,
+                 fmt::format("unknown effect '{}'", name),
+                 {},
+                 0,
+                 join(known) + "; effects of yours with --path FOLDER (--path . for this one's)",
                  nearest_name(name, known)};
   }
   const auto wanted = [&](const std::string& name) {

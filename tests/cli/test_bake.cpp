@@ -37,8 +37,9 @@ TEST_F(Bake, TheTableDoesWhatTheLookDoes) {
         << outcome.out;
     EXPECT_LT(std::stod(found[2]), 0.3);
     // A .clf takes scene-linear light itself, a .cube ACEScct.
-    ASSERT_TRUE(std::regex_search(outcome.out, loading, std::regex("\nin a look: (\\{.*\\})\n"))) << outcome.out;
-    write("table.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut " + loading[1].str() + " }\n");
+    ASSERT_TRUE(std::regex_search(outcome.out, loading, std::regex("\nin a look: (fx\\.lut \\{.*\\})\n")))
+        << outcome.out;
+    write("table.lua", "local fx = require \"afterglow\"\nreturn fx.stack { " + loading[1].str() + " }\n");
     const Outcome applied = run({"run", "table.lua", "a.exr", "-o", "table.png", "--dither", "none"});
     ASSERT_EQ(applied.exit_code, kDone) << applied.err;
     EXPECT_LE(largest_difference("direct.png", "table.png"), (std::stod(found[1]) + 1) / 255) << file;
@@ -65,7 +66,8 @@ TEST_F(Bake, PicturesAndCodes) {
   const Outcome codes = run({"bake", "look.lua", "-o", "codes.cube"});
   ASSERT_EQ(codes.exit_code, kDone);
   EXPECT_THAT(codes.err, HasSubstr("the table cuts off what is above 1; --shaper log takes it"));
-  EXPECT_THAT(codes.out, HasSubstr("\nin a look: { file = \"codes.cube\", input = \"srgb\", output = \"srgb\" }\n"));
+  EXPECT_THAT(codes.out,
+              HasSubstr("\nin a look: fx.lut { file = \"codes.cube\", input = \"srgb\", output = \"srgb\" }\n"));
   EXPECT_THAT(read("codes.cube"),
               HasSubstr("# sRGB codes to sRGB codes of a display\nTITLE \"Warm & soft\"\nLUT_3D_SIZE 33\n"));
 }

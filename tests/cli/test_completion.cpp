@@ -89,6 +89,13 @@ TEST_F(Completions, BashOffersCommandsOptionsAndValues) {
   EXPECT_THAT(offered("farm ret"), testing::ElementsAre("retry"));
   EXPECT_THAT(offered("completion z"), testing::ElementsAre("zsh"));
   EXPECT_THAT(offered("man expl"), testing::ElementsAre("explain"));
+  EXPECT_THAT(offered("effects mask.lu"), testing::ElementsAre("mask.luma"));
+  EXPECT_THAT(offered("run --format ti"), testing::ElementsAre("tif", "tiff"));
+  for (const char* name : {"look.exr", "run.exr", "zebra.exr", "bloom.exr"}) write(name, "");
+  EXPECT_THAT(offered("new lo"), testing::ElementsAre("look")) << "no files where words are meant";
+  EXPECT_THAT(offered("man ru"), testing::ElementsAre("run"));
+  EXPECT_THAT(offered("completion z"), testing::ElementsAre("zsh"));
+  EXPECT_THAT(offered("effects blo"), testing::ElementsAre("bloom"));
 }
 
 TEST_F(Completions, UnknownShellsAndCommandsAreRefused) {

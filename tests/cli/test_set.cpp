@@ -119,6 +119,33 @@ TEST_F(Set, Messages) {
   fails({"set", "nowhere.lua", "bloom.knee=1"}, kScript, "nowhere.lua: error:");
 }
 
+TEST_F(Set, PresetsThatComeAlongAreNotWrittenByTheirName) {
+  fs::create_directory(path("home"));
+  for (const char* folder : {"scripts", "shaders", "presets"})
+    fs::copy(preset("").parent_path().parent_path() / folder, path("home/" + std::string(folder)),
+             fs::copy_options::recursive);
+  const RunOptions there{.environment = {{"AFTERGLOW_HOME", text("home")}}};
+  const std::string file = "home/presets/neon_night.lua", before = read(file);
+  for (const auto& more : {std::vector<std::string>{}, {"--dry-run"}}) {
+    std::vector<std::string> arguments{"set", "neon_night", "bloom.intensity=0.9"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome refused = run(arguments, there);
+    EXPECT_EQ(refused.exit_code, kUsage);
+    EXPECT_EQ(refused.err,
+              "neon_night: error: comes along with Afterglow and stays as it is: copy it first; allowed: a file of "
+              "yours, as `cp " +
+                  text(file) + " .` makes one\n");
+  }
+  EXPECT_EQ(read(file), before);
+  EXPECT_THAT(run({"set", "print", "tone_mapping.mode=aces"}, there).err,
+              HasSubstr("`cp -r " + text("home/presets/print") + " .`"));
+  // What a path names is the user's own affair, and so are presets of --path.
+  EXPECT_EQ(run({"set", file, "bloom.intensity=0.9"}, there).exit_code, kDone);
+  EXPECT_NE(read(file), before);
+  EXPECT_EQ(run({"set", "look", "bloom.intensity=0.9", "--path", "."}, there).exit_code, kDone);
+  EXPECT_THAT(read("look.lua"), HasSubstr("intensity = 0.9"));
+}
+
 TEST_F(Set, AFileThatIsNotThereIsAWarning) {
   write("lut.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut {} }\n");
   const Outcome outcome = run({"set", "lut.lua", "lut.file=later.cube"});

@@ -173,7 +173,7 @@ TEST(Pattern, FilesThatAreLeftOutAreNamed) {
   EXPECT_EQ(others.files, 3u);
   EXPECT_EQ(others.first, folder / "f.0003.exr");
   const auto none = find_frames(parse_pattern((folder / "g.##.exr").string()).value(), std::nullopt);
-  EXPECT_THAT(none.error().message, HasSubstr("no file matches this pattern: of g.7.exr the digits are others"));
+  EXPECT_THAT(none.error().message, HasSubstr("no file matches this pattern: it has 2 digits, and g.7.exr has 1"));
   std::filesystem::create_directory(folder / "dates");
   std::ofstream(folder / "dates/d.20261122001.exr") << "x";
   EXPECT_THAT(sequence_in(folder / "dates").error().message,

@@ -186,7 +186,6 @@ TEST_F(SettingMessages, PresetsThatReturnSomethingElse) {
     return scene.load_error();
   };
   EXPECT_EQ(returned("return 5"), "preset.lua: error: a preset must return fx.stack { … }, not 5");
-  EXPECT_EQ(returned(""), "preset.lua: error: a preset must return fx.stack { … }, not nil");
   EXPECT_EQ(returned("return { fx.glow {} }"), "preset.lua: error: a preset must return fx.stack { … }, not a table");
   EXPECT_EQ(returned("return fx.glow {}"),
             "preset.lua: error: a preset must return fx.stack { … }, not an effect entry");

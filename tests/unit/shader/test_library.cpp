@@ -63,7 +63,9 @@ TEST(ShaderLibrary, UnknownNamesGetTheNearest) {
   ShaderLibrary library(files.search());
   const auto result = library.find("bloom/treshold");
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().text(), "error: unknown shader 'bloom/treshold'; did you mean 'bloom/threshold'?");
+  EXPECT_EQ(result.error().text(),
+            "error: unknown shader 'bloom/treshold'; allowed: shaders/bloom/treshold.glsl beside the preset, or on the "
+            "search path; did you mean 'bloom/threshold'?");
   EXPECT_EQ(result.error().kind, ErrorKind::script);
   EXPECT_EQ(library.find("bloom/threshold.glsl").error().nearest, "bloom/threshold");
   EXPECT_THAT(library.names(), ElementsAre("bloom/threshold"));

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "apps/missing_frames.h"
+
+#include <fmt/format.h>
+
+#include "core/exception.h"
+#include "core/parse_number.h"
+#include "image/sequence.h"
+
+namespace afterglow {
+namespace {
+
+std::optional<int> number_of(const std::filesystem::path& file) {
+  const FrameNumber place = frame_number(file);
+  if (place.digits == 0 || place.digits > kMostFrameDigits) return std::nullopt;
+  return parse_number<int>(file.filename().string().substr(place.begin, place.end - place.begin));
+}
+
+}  // namespace
+
+MissingFrames::~MissingFrames() {
+  try {
+    tell_kept();
+  } catch (const std::exception&) {  // there is no memory for the message
+  }
+}
+
+bool MissingFrames::continues(const Error& error) const {
+  const auto number = number_of(error.file);
+  if (!first_ || !number || without_frame_number(error.file) != without_frame_number(first_->file)) return false;
+  const int step = *number - number_;
+  return step > 0 && (count_ == 1 || step == step_);
+}
+
+void MissingFrames::add(const Error& error) {
+  const bool absent = error.message == "no such file" && error.trail.empty() && number_of(error.file);
+  if (absent && continues(error)) {
+    const int number = *number_of(error.file);
+    step_ = number - number_;
+    number_ = number;
+    last_ = error.file;
+    ++count_;
+    return;
+  }
+  tell_kept();
+  if (!absent) return tell_(error);
+  first_ = error;
+  number_ = *number_of(error.file);
+  count_ = 1;
+}
+
+void MissingFrames::tell_kept() {
+  if (!first_) return;
+  Error error = *std::move(first_);
+  first_.reset();
+  if (count_ > 1)
+    error.message = fmt::format("no such file, and {} more up to {} are not there", count_ - 1,
+                                std::filesystem::path(last_).filename().string());
+  tell_(error);
+}
+
+}  // namespace afterglow
