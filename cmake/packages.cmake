@@ -77,7 +77,10 @@ afterglow_package(documents afterglow-doc doc "" "Documents of Afterglow" docume
 set(CPACK_DEBIAN_DOCUMENTS_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCUMENTS_PACKAGE_SHLIBDEPS OFF)
 install(FILES packaging/copyright DESTINATION ${doc} COMPONENT documents)
-install(FILES README.md CHANGELOG.md THIRD_PARTY.md DESTINATION ${doc} COMPONENT documents)
+install(FILES README.md CHANGELOG.md THIRD_PARTY.md CONTRIBUTING.md LICENSE DESTINATION ${doc} COMPONENT documents)
+# What the pages link to.
+install(FILES tests/images/README.md DESTINATION ${doc}/tests/images COMPONENT documents)
+install(DIRECTORY calibration presets DESTINATION ${doc} COMPONENT documents FILES_MATCHING PATTERN "*.lua" PATTERN "*.json")
 install(DIRECTORY docs examples DESTINATION ${doc} COMPONENT documents
   PATTERN "*.sh" EXCLUDE PATTERN "benchmarks/looks" EXCLUDE)
 

@@ -72,7 +72,7 @@ for name in $names; do render "$name"; done
   cat <<'INTRO'
 # Effects
 
-Made by docs/effects/make.sh from the effects themselves; `afterglow effects NAME` tells the same. Every setting has a default, so
+Made by docs/effects/make.sh from the effects themselves; `afterglow effects NAME` lists the same settings. Every setting has a default, so
 `fx.vignette {}` is a whole entry. Effects run by injection point and order, wherever they stand in the list; `at` and `order` in an entry
 move one. The pictures show what each example makes of a scene; all end with a neutral tone curve. [gallery.md](gallery.md) shows them all, small. The cost is counted in what
 `afterglow graph docs/effects/NAME.lua --size 1920x1080 --format json` describes; `afterglow bench docs/effects/NAME.lua` measures times on your device.

@@ -75,7 +75,7 @@ clipping="tools/clipping.py $program $alley $sea $hdri $photo --sheet docs/image
   cat <<'INTRO'
 # Looks
 
-Made by docs/images/make.sh. Each preset on the scene that shows it best; on the site a slider shows what went in. `afterglow run presets/NAME.lua PICTURE -o out.png` makes one.
+Made by docs/images/make.sh. Each preset on the scene that shows it best; on the site a slider shows what went in. `afterglow run NAME PICTURE -o out.png` makes one, from any folder.
 
 `anime_night`, `clean_product`, `dream_haze`, `golden_hour`, `neon_noir` and `shallow_focus` use depth, `ink_outline` depth and normals: channels of the picture, or `--depth FILE` and `--normal FILE`. Without them those entries are skipped, with a warning.
 
@@ -93,7 +93,7 @@ A street at night and a terrace at sunset (Blender), an HDR photograph (a whole 
 
 ## What they clip
 
-The share of pixels with a channel at 255, in percent, and in brackets how many points that is more than the preset's tone curve alone. 5 are allowed.
+The share of pixels with a channel at 255, in percent. In brackets: by how many percentage points that is more than with the preset's tone curve alone. More than 5 points count as a fault. (`tools/clipping.py` is in the source.)
 
 TEXT
   printf '`%s`\n\n' "${clipping/$program/PROGRAM}"
