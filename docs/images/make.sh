@@ -106,7 +106,7 @@ TEXT
 |---|---|
 | how close a small preview comes to the whole picture, by effect | [math.md §23](math.md#23-lengths) |
 | colours at soft edges, by effect | [alpha.md](alpha.md) |
-| what each effect costs, in copy passes | [benchmarks](benchmarks/README.md) |
+| what each effect costs: 1 is the time in which the device copies the picture once | [benchmarks](benchmarks/README.md) |
 | `depth_of_field` and `bokeh_blur`, before and now | [picture](images/blurs_before_after.jpg) |
 | what tone curves do to greys and colours | [tone_mapping.md](tone_mapping.md) |
 TEXT
