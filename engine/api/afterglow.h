@@ -233,7 +233,10 @@ AFTERGLOW_API afterglow_error *afterglow_stack_settings(const afterglow_stack *s
 
 /* Sets what `afterglow --set NAME=VALUE` sets, from the same text: "0.4", "true", "aces", "{1, 0.5, 0}", "#ff8000".
  * Nothing that was recorded from the stack may be in flight; this holds for all of these functions. Errors: usage
- * (unknown name, value that is not allowed; the allowed ones and the nearest name are given), script. */
+ * (unknown name, value that is not allowed; the allowed ones and the nearest name are given), script. What only a frame
+ * can tell (a file that is not there, a view that its display does not have) is no error yet, so that settings that
+ * belong together can be set one after the other: the next run tells, or afterglow_stack_update of a stack that follows
+ * its files. */
 AFTERGLOW_API afterglow_error *afterglow_stack_set(afterglow_stack *stack, afterglow_string name,
                                                    afterglow_string value);
 /* The same from values: integers and numbers; booleans; choices and files; colours (scene-linear) and vectors. */

@@ -133,9 +133,9 @@ Result<void> Backend::prepare(const Shape& shape) {
 }
 
 Result<std::shared_ptr<const Build>> Backend::evaluate(const Shape& shape) {
+  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
   shape_ = shape;
   seen_.reset();
-  AFTERGLOW_TRY(auto build, source_->evaluate(shape));
   if (const std::string& space = preset().input_space(); !space.empty())
     diagnostics_.warn_once(
         "input_space " + space,

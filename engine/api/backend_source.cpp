@@ -53,8 +53,9 @@ class Loaded : public Source {
     return load(wanted, true);
   }
   Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override {
+    AFTERGLOW_TRY(auto build, stack_->evaluate(shape.context));
     shape_ = shape;
-    return stack_->evaluate(shape.context);
+    return build;
   }
 
  private:
@@ -73,13 +74,14 @@ class Loaded : public Source {
     return {};
   }
 
-  /// A stack that does for frames like the last one: tables are read for a frame alone, and shaders compiled.
+  /// A stack that does for frames like the last one, if it is of files that were read anew: tables are read for a frame
+  /// alone, and shaders compiled.
   Result<std::unique_ptr<Stack>> tried(const StackOptions& wanted, bool anew) {
     AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, said_));
     later->use(*device_.device, !options_.commands);
-    if (!shape_) return later;
+    if (!anew || !shape_) return later;
     AFTERGLOW_TRY(auto build, later->evaluate(shape_->context));
-    if (anew) AFTERGLOW_CHECK(later->prepare(request_for(std::move(build), shape_->encoding, shape_->region)));
+    AFTERGLOW_CHECK(later->prepare(request_for(std::move(build), shape_->encoding, shape_->region)));
     return later;
   }
 
@@ -95,17 +97,14 @@ class Loaded : public Source {
   Diagnostics said_{[this](Severity severity, const std::string& message) { tell(severity, message); }};
   NewMessages printed_;
   bool loading_ = false;
-  std::optional<Shape> shape_;  ///< of the last frame
+  std::optional<Shape> shape_;  ///< of the last frame that could be made
   std::unique_ptr<Stack> stack_;
 };
 
 /// Built on a thread of the library's when files change.
 class Followed : public Source {
  public:
-  Followed(const BackendOptions& options, Diagnostics& diagnostics)
-      : options_(options),
-        diagnostics_(diagnostics),
-        given_{options.stack.preset.overrides, options.stack.preset.arguments} {}
+  Followed(const BackendOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
 
   Result<void> open(SharedDevice& device) {
     if (!options_.stack.preset.arguments.empty()) AFTERGLOW_CHECK(attempt(options_.stack.preset));
@@ -129,16 +128,9 @@ class Followed : public Source {
     wanted.must_fit = must_fit;
     const auto fits = attempt(wanted);
     if (!fits && !is_of_the_files(fits.error())) return fits.error();
-    const auto error = built_with(given);
-    // What a frame reads is found out by building for one.
-    const auto before = fits && error ? built_with(given_) : error;
-    if (error && (!before || before->text() != error->text())) {
-      (void)settle();
-      return *error;
-    }
-    given_ = given;
-    if (!error) return settle();
-    (void)built_with(given);  // the files are broken, which `update` tells; what is set counts with the next good edit
+    live_->set_overrides(given.overrides, given.arguments);
+    live_->settle();  // what is wrong with the files, or with a frame of these, `update` tells
+    if (live_->update()) tell_messages();
     return {};
   }
 
@@ -191,12 +183,6 @@ class Followed : public Source {
     const auto opens = attempt(alone);
     return !opens && opens.error().text() == error.text();
   }
-  /// What is wrong with a build for these.
-  std::optional<Error> built_with(const Given& given) {
-    live_->set_overrides(given.overrides, given.arguments);
-    live_->settle();
-    return live_->status().error;
-  }
   Result<void> settle() {
     live_->settle();
     if (live_->update()) tell_messages();
@@ -221,7 +207,6 @@ class Followed : public Source {
   BackendOptions options_;
   Diagnostics& diagnostics_;
   mutable Diagnostics silent_;  ///< messages of builds come with the status of the one that is shown
-  Given given_;
   std::unique_ptr<LiveStack> live_;
   std::optional<BuildContext> context_;
   std::optional<DisplayEncoding> encoding_;

@@ -76,8 +76,10 @@ class Label {
     const int row = static_cast<int>(std::floor(at.y)), column = static_cast<int>(std::floor(at.x * 2));
     double best = -kSpread / kHeight;
     for (int beside = column - 1; beside <= column + 1; ++beside)
-      if (const auto place = letter_at(beside, row)) {
-        const glm::dvec2 from = (at - glm::dvec2(beside * 0.5, row)) * double{kHeight};
+      for (int line = row - 1; line <= row + 1; ++line) {
+        const auto place = letter_at(beside, line);
+        if (!place) continue;
+        const glm::dvec2 from = (at - glm::dvec2(beside * 0.5, line)) * double{kHeight};
         const glm::dvec2 near = glm::clamp(from, glm::dvec2(0.5), glm::dvec2(kWidth, kHeight) - 0.5);
         const glm::dvec2 corner(*place % kAcross * kWidth, *place / kAcross * kHeight);
         const double value = sample_linear(font_, corner.x + near.x, corner.y + near.y).r;

@@ -19,17 +19,30 @@ local function find(code)
   end
 end
 
--- The code points of a text in UTF-8. A byte that begins none is a square.
+-- How many bytes follow the first one of a letter in UTF-8, and the bits that it has of the letter; nil: it is none.
+local function begun(byte)
+  if byte < 0x80 then return 0, byte end
+  if byte >= 0xC2 and byte < 0xE0 then return 1, byte & 0x1F end
+  if byte >= 0xE0 and byte < 0xF0 then return 2, byte & 0x0F end
+  if byte >= 0xF0 and byte < 0xF5 then return 3, byte & 0x07 end
+end
+
+-- The code points of a text in UTF-8. Bytes that are none, and letters that are cut off, are squares.
 local function codes_of(text)
-  local codes, left = {}, 0
-  for i = 1, #text do
-    local byte = text:byte(i)
-    if left > 0 and byte & 0xC0 == 0x80 then
-      codes[#codes], left = codes[#codes] << 6 | byte & 0x3F, left - 1
-    else
-      left = byte < 0xC0 and 0 or byte < 0xE0 and 1 or byte < 0xF0 and 2 or 3
-      codes[#codes + 1] = byte < 0x80 and byte or byte & 0x3F >> left
+  local codes, at = {}, 1
+  while at <= #text do
+    local follow, code = begun(text:byte(at))
+    local last = at + (follow or 0)
+    for i = at + 1, last do
+      local byte = text:byte(i) or 0
+      if byte & 0xC0 ~= 0x80 then
+        code, last = nil, i - 1
+        break
+      end
+      code = code << 6 | byte & 0x3F
     end
+    codes[#codes + 1] = code or kSquare
+    at = last + 1
   end
   return codes
 end

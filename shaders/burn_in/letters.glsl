@@ -27,10 +27,14 @@ float within(vec2 at, ivec2 cell) {
   return (fetch_linear(font, texel).r - 0.5) * kSpread - length(from - near);
 }
 
-// Letters reach a little into the cells beside them.
+// Letters, and their outlines the more, reach a little into the cells beside them, above and below.
 float within_text(vec2 at) {
   ivec2 cell = ivec2(floor(at / vec2(kCell)));
-  return max(within(at, cell), max(within(at, cell - ivec2(1, 0)), within(at, cell + ivec2(1, 0))));
+  int other = fract(at.y / float(kCell.y)) < 0.5 ? -1 : 1;
+  float inside = kOutside;
+  for (int y = 0; y < 2; ++y)
+    for (int x = -1; x < 2; ++x) inside = max(inside, within(at, cell + ivec2(x, y * other)));
+  return inside;
 }
 
 // Letters, and they with their outline.

@@ -36,15 +36,15 @@ EffectCase burnt(const std::string& text, const BurnIn& v) {
 TEST_F(Effects, BurnInAgrees) {
   agree_everywhere({burnt("Ab 0129", {U"Ab 0129"}), burnt("x", {.text = U"x", .size = 1, .margin = 0}),
                     burnt("Ærø\\nПуть €\\n\\n字.", {.text = U"Ærø\nПуть €\n\n字.", .x = 0.1, .y = 0.4, .size = 0.2}),
-                    burnt("Wide_Wide_W/Ä", {.text = U"Wide_Wide_W/Ä",
-                                            .x = 1,
-                                            .y = 0,
-                                            .size = 0.3,
-                                            .margin = 0.1,
-                                            .color = {4, 0.5, 0},
-                                            .background = {0, 0.25, 1},
-                                            .box = 0.3,
-                                            .outline = 0.1})},
+                    burnt("Wigj_ÅÄÇ_W/Ä\\nÉq", {.text = U"Wigj_ÅÄÇ_W/Ä\nÉq",
+                                                .x = 1,
+                                                .y = 0,
+                                                .size = 0.3,
+                                                .margin = 0.1,
+                                                .color = {4, 0.5, 0},
+                                                .background = {0, 0.25, 1},
+                                                .box = 0.3,
+                                                .outline = 0.1})},
                    {.full = 1e-3, .fused = 1e-5, .half = 2e-2});
   expect_skipped("fx.burn_in { text = \"\" }", "text is empty");
 }
@@ -66,6 +66,9 @@ TEST_F(Effects, BurnInFillsInTheFrame) {
   EXPECT_TRUE(same("{time}", "1.750", scene, 43));
   EXPECT_TRUE(same("{", "{", scene, 42));
   EXPECT_FALSE(same("{frame}", "0043", scene, 42));
+  // Bytes that are no letters, and letters that are cut off or lie beyond the picture, are squares.
+  EXPECT_TRUE(same("a\\xB1\\xCAb\\xE2\\x82c\\xF0\\x9F\\x98\\x80\\xC1\\xC3", "a□□b□c□□□", scene, 42));
+  EXPECT_FALSE(same("□", "x", scene, 42));
 }
 
 /// Every time code of eleven minutes, counted as clocks do, and back.

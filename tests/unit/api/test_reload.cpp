@@ -340,11 +340,20 @@ TEST_F(ReloadTest, FilesThatAreNotThereLeaveTheLastGoodLook) {
     options.user = &waker;
     const StackPtr stack = this->stack(options);
     const float dark = first_sample(stack);
-    const ErrorPtr refused(afterglow_stack_set_text(stack.get(), str("lut.file"), str("none.cube")));
-    EXPECT_EQ(afterglow_error_get_kind(refused.get()), AFTERGLOW_ERROR_SCRIPT);
-    EXPECT_EQ(first_sample(stack), dark);
+    // Settings that belong together are set one after the other: what only a frame can tell is told by it.
+    ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("lut.file"), str("none.cube"))));
+    std::vector<float> source(4, 0.5f), result(4);
+    afterglow_run_info info = afterglow_run_info_default();
+    info.source = image(source, 1, 1);
+    info.result = image(result, 1, 1);
+    const ErrorPtr told = follow ? update(stack, waker) : ErrorPtr(afterglow_stack_run(stack.get(), &info));
+    EXPECT_THAT(text_of(told.get()), HasSubstr("none.cube"));
+    if (follow) {
+      EXPECT_EQ(first_sample(stack), dark);
+    }
     ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 2)));
-    EXPECT_EQ(first_sample(stack), dark) << "the file was not set";
+    ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), str("lut.file"))));
+    EXPECT_EQ(first_sample(stack), dark);
     fs::remove(folder_ / "dark.cube");
     EXPECT_EQ(follow && update(stack, waker), follow);
     EXPECT_EQ(first_sample(stack), dark);
@@ -354,6 +363,24 @@ TEST_F(ReloadTest, FilesThatAreNotThereLeaveTheLastGoodLook) {
     ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
     EXPECT_EQ(first_sample(stack), dark);
   }
+}
+
+/// A frame that failed is nothing that later calls are held to.
+TEST_F(ReloadTest, AFrameThatFailsIsNoReasonToRefuse) {
+  look("fx.gain { amount = function(t) if t.frame > 5 then error('no such frame') end return 2 end }");
+  const StackPtr stack = this->stack();
+  std::vector<float> source(4, 0.5f), result(4);
+  afterglow_run_info info = afterglow_run_info_default();
+  afterglow_frame frame = afterglow_frame_default();
+  frame.number = 9;
+  info.frame = &frame;
+  info.source = image(source, 1, 1);
+  info.result = image(result, 1, 1);
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_run(stack.get(), &info)));
+  ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
 }
 
 TEST_F(ReloadTest, AShaderThatIsBrokenIsToldByReload) {
