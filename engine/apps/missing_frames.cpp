@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/exception.h"
 #include "core/parse_number.h"
 #include "image/sequence.h"
@@ -32,7 +34,12 @@ bool MissingFrames::continues(const Error& error) const {
   return step > 0 && (count_ == 1 || step == step_);
 }
 
+void MissingFrames::next() {
+  if (!std::exchange(added_, false)) tell_kept();
+}
+
 void MissingFrames::add(const Error& error) {
+  added_ = true;
   const bool absent = error.message == "no such file" && error.trail.empty() && number_of(error.file);
   if (absent && continues(error)) {
     const int number = *number_of(error.file);

@@ -10,7 +10,7 @@
 namespace afterglow {
 
 /// Passes errors on. Of files that are not there and whose numbers follow each other at one step, a single error is
-/// made: when another comes, or when this ends. Not thread-safe.
+/// made: when another comes, a frame that is there, or the end. Not thread-safe.
 class MissingFrames {
  public:
   explicit MissingFrames(std::function<void(const Error&)> tell) : tell_(std::move(tell)) {}
@@ -19,6 +19,8 @@ class MissingFrames {
   MissingFrames& operator=(const MissingFrames&) = delete;
 
   void add(const Error& error);
+  /// The run comes to the next frame.
+  void next();
 
  private:
   bool continues(const Error& error) const;
@@ -28,6 +30,7 @@ class MissingFrames {
   std::optional<Error> first_;
   std::string last_;  ///< file
   int count_ = 0, number_ = 0, step_ = 0;
+  bool added_ = false;  ///< since the run came to its frame
 };
 
 }  // namespace afterglow

@@ -75,6 +75,8 @@ void add_variables(lua_State* lua, std::vector<std::string>& names) {
 
 /// Does a line give this word, and nothing else, to a key: "mode = aces,"? Then it may have been meant as a text.
 bool is_given_alone(std::string_view line, std::string_view word) {
+  constexpr std::size_t kLongest = 1000;  // of what people write
+  if (line.size() > kLongest) return false;
   if (trim(line).starts_with("local ")) return false;
   for (std::size_t at = line.find(word); at != std::string_view::npos; at = line.find(word, at + 1)) {
     const std::string before = trim(line.substr(0, at)), behind = trim(line.substr(at + word.size()));
