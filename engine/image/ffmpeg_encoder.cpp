@@ -157,8 +157,17 @@ class FfmpegEncoder : public VideoEncoder {
         packet->duration = found->second;
         durations_.erase(found);
       }
+      say_matrix(*packet);
       AFTERGLOW_CHECK(file_->write(*packet));
     }
+  }
+
+  /// The colour volume of a frame of DNxHR (SMPTE ST 2019-1), which libavcodec writes as that of BT.709: two bits, of
+  /// which 1 is BT.2020.
+  void say_matrix(AVPacket& packet) const {
+    constexpr int kAt = 0x2c, kVolume = 6, kBt2020 = 2, kMatrix = 9;
+    if (plan_.codec != "dnxhr" || plan_.matrix != kMatrix || packet.size <= kAt) return;
+    packet.data[kAt] = static_cast<std::uint8_t>((packet.data[kAt] & ~kVolume) | kBt2020);
   }
 
   VideoPlan plan_;

@@ -11,7 +11,8 @@ extern "C" {
 
 #include <array>
 #include <cmath>
-#include <cstring>
+
+#include "image/ffmpeg_color.h"
 
 namespace afterglow {
 namespace {
@@ -77,16 +78,6 @@ bool is_interlaced(const AVFrame& frame) {
 #endif
 }
 
-/// What a file says of its colours, as the number that stands there: FFmpeg's readers (Matroska's) put numbers into
-/// enumerations that have no such name, and C++ may not read those as what they claim to be.
-template <class Enumeration>
-int number_of(const Enumeration& stands) {
-  static_assert(sizeof stands == sizeof(int));
-  int number = 0;
-  std::memcpy(&number, &stands, sizeof number);
-  return number;
-}
-
 Rational rational(AVRational r) { return {r.num, r.den}; }
 
 /// A side that becomes longer; an even one stays even, for codecs that halve colour.
@@ -118,26 +109,6 @@ void use_aspect(FfmpegInput& input, const AVFrame& first, MovieFacts& facts) {
                                     facts.size.height));
 }
 
-MovieColor color_of(const AVFrame& frame, AVCodecID codec) {
-  MovieColor color;
-  color.primaries = number_of(frame.color_primaries);
-  color.transfer = number_of(frame.color_trc);
-  color.matrix = number_of(frame.colorspace);
-  const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
-  color.rgb = format && (format->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
-  for (const AVCodecID still : {AV_CODEC_ID_MJPEG, AV_CODEC_ID_GIF, AV_CODEC_ID_APNG, AV_CODEC_ID_PNG, AV_CODEC_ID_BMP,
-                                AV_CODEC_ID_WEBP, AV_CODEC_ID_PPM, AV_CODEC_ID_PGM, AV_CODEC_ID_PAM, AV_CODEC_ID_PFM})
-    color.picture = color.picture || codec == still;
-  // As FFmpeg's swscale has it: grey that no matrix of YUV goes with is no part of a video signal.
-  const bool plain_grey = !color.rgb && format && format->nb_components <= 2 &&
-                          (color.matrix == AVCOL_SPC_UNSPECIFIED || color.matrix == AVCOL_SPC_RGB);
-  const bool full_format = format && std::strncmp(format->name, "yuvj", 4) == 0;
-  const int range = number_of(frame.color_range);
-  color.full_range = range == AVCOL_RANGE_JPEG || full_format ||
-                     (range == AVCOL_RANGE_UNSPECIFIED && (color.rgb || color.picture || plain_grey));
-  return color;
-}
-
 }  // namespace
 
 std::string first_time_code(const AVFormatContext& container) {
@@ -166,7 +137,7 @@ MovieFacts facts_of(FfmpegInput& input, const AVFrame& first) {
     facts.has_alpha = palette || (format->flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
     facts.grey = format->nb_components <= 2 && !palette;
   }
-  facts.color = color_of(first, stream.codecpar->codec_id);
+  facts.color = color_of(first, stream.codecpar->codec_id, facts.container, input.said_around(), facts.two_colors);
   use_aspect(input, first, facts);
   if (const std::int32_t* matrix = matrix_of(first, stream)) use_display_matrix(matrix, facts);
   facts.leaves_alpha = input.leaves_alpha();
@@ -182,7 +153,7 @@ FramePlanes planes_of(const AVFrame& frame, const MovieFacts& facts) {
   planes.transfer = facts.color.transfer;
   planes.primaries = facts.color.primaries;
   planes.full_range = facts.color.full_range;
-  planes.chroma_place = number_of(frame.chroma_location);
+  planes.chroma_place = chroma_place_of(frame);
   return planes;
 }
 

@@ -129,7 +129,14 @@ bool FfmpegInput::leaves_alpha() const {
   return false;
 }
 
+SaidColor FfmpegInput::said_around() const {
+  const auto at = static_cast<std::size_t>(stream_);
+  return at < said_.size() ? said_[at] : SaidColor{};
+}
+
 Result<void> FfmpegInput::choose_stream() {
+  // Looking into streams writes what their decoders say over what the container says.
+  for (unsigned i = 0; i < container_->nb_streams; ++i) said_.push_back(said_by(*container_->streams[i]->codecpar));
   // The best is chosen twice: most containers name their streams first, others must be looked into.
   for (unsigned i = 0; i < container_->nb_streams; ++i)
     if (container_->streams[i]->codecpar->codec_type != AVMEDIA_TYPE_VIDEO)

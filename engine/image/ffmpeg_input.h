@@ -6,9 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "image/ffmpeg_bytes.h"
+#include "image/ffmpeg_color.h"
 #include "image/ffmpeg_handles.h"
 #include "image/ffmpeg_log.h"
 #include "image/movie_source.h"
@@ -49,6 +51,8 @@ class FfmpegInput {
   bool ends_early();
   /// Its pictures have an alpha in a track of its own, which is not read.
   bool leaves_alpha() const;
+  /// What the container says of the stream's colours, whatever the stream says itself.
+  SaidColor said_around() const;
 
  private:
   FfmpegInput() = default;
@@ -67,7 +71,8 @@ class FfmpegInput {
   FfmpegRemarks remarks_;
   AVFormatContext* container_ = nullptr;
   int stream_ = 0;
-  std::uint64_t last_ = 0;  ///< where the data of the last packet end
+  std::vector<SaidColor> said_;  ///< by the container of each stream
+  std::uint64_t last_ = 0;       ///< where the data of the last packet end
   const AVCodec* codec_ = nullptr;
 };
 

@@ -52,6 +52,7 @@ struct MovieFacts {
   bool sound = false;           ///< of what cannot be sought in: there is sound beside the pictures
   bool hdr_metadata = false;    ///< it says which display it was made on, or how bright it gets (HDR10)
   MovieColor color;
+  std::string two_colors;        ///< what its container and its stream say of their colours, where they disagree
   Rational rate{0, 1};           ///< frames a second, on the average; 0: unknown
   Rational time_base{1, 1};      ///< seconds of a time stamp's unit
   std::vector<long long> pts;    ///< of each frame that the file has or ought to have, in the order in which they show

@@ -18,6 +18,7 @@
 #include "image/dpx_header.h"
 #include "image/heif_check.h"
 #include "image/input_space.h"
+#include "image/movie_color.h"
 #include "image/oiio_metadata.h"
 #include "image/read_webp.h"
 #include "image/unpack_bmp.h"
@@ -122,6 +123,7 @@ class OiioFile : public PictureFile {
       profile = {};
     }
     const bool said = use_container_color(container_, profile, path_.string(), encoding, diagnostics);
+    if (integer && format_ == "dpx" && use_film_transfer(spec, encoding)) return encoding;
     if (!said && integer && format_ != "pnm")  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
     return encoding;
@@ -290,6 +292,24 @@ class OiioFile : public PictureFile {
     AFTERGLOW_TRY(const std::vector<std::uint8_t> codes, read_webp(path_, size));
     hand_out(codes, 255, size, 4, first, channels);
     return {};
+  }
+
+  /// What SMPTE ST 268 has more words for (table 5) than the library tells.
+  static bool use_film_transfer(const OIIO::ImageSpec& spec, ColorEncoding& encoding) {
+    constexpr int kCamera = 1, kBt709 = 1, kBt601Of625 = 5, kBt601Of525 = 6;  // of H.273
+    const auto says = [&](const char* what, std::string_view word) {
+      return spec.get_string_attribute(what).find(word) != std::string::npos;
+    };
+    constexpr const char *kTransfer = "dpx:Transfer", *kPrimaries = "dpx:Colorimetric";
+    if (says(kTransfer, "Printing density")) {
+      use_input_space(*find_input_space("cineon").value(), encoding);
+      return true;
+    }
+    if (!says(kTransfer, "SMPTE 274M") && !says(kTransfer, "ITU-R 601")) return false;
+    const int primaries = says(kPrimaries, "system B or G") ? kBt601Of625
+                          : says(kPrimaries, "system M")    ? kBt601Of525
+                                                            : kBt709;
+    return use_codes(primaries, kCamera, encoding);
   }
 
   void use_color_space(const std::string& name, ColorEncoding& encoding, Diagnostics& diagnostics) const {

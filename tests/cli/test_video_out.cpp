@@ -119,6 +119,20 @@ TEST_F(VideoOut, UntoldColoursAreBt709) {
   EXPECT_EQ(hdr.at("color_space"), "bt2020nc");
 }
 
+/// In the frame's own header, which libavcodec leaves at BT.709, for those who ask it before the container.
+TEST_F(VideoOut, DnxhrSaysItsMatrixInEachFrame) {
+  make_frames(2, 256, 128);
+  for (const auto& [space, layout, matrix] : {std::tuple("pq", "yuv422p10", "bt2020nc"),
+                                              {"hlg", "yuv444p10", "bt2020nc"},
+                                              {"rec709", "yuv422p10", "bt709"}}) {
+    const Outcome made = run({"run", "look.lua", "in/####.ppm", "-o", "d.mov", "--codec", "dnxhr", "--pix-fmt", layout,
+                              "--output-space", space});
+    ASSERT_EQ(made.exit_code, kDone) << made.err;
+    for (const auto& frame : probe("d.mov", "-select_streams v -show_frames").at("frames"))
+      EXPECT_EQ(frame.at("color_space"), matrix) << space;
+  }
+}
+
 TEST_F(VideoOut, LinearLightOfWidePrimariesIsTaggedAndRead) {
   make_frames(1);
   const struct {

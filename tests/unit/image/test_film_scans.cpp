@@ -104,5 +104,27 @@ TEST(FilmScans, DpxLinesAreWholeWords) {
   }
 }
 
+/// Transfer characteristics of SMPTE ST 268, table 5, at their byte.
+TEST(FilmScans, DpxIsReadByItsTransferCharacteristic) {
+  const TemporaryFolder folder;
+  const Picture picture = wedge(36, 4, false);
+  ASSERT_TRUE(write(picture, folder / "a.dpx", with(SampleType::uint10)));
+  const std::string bytes = read_file(folder / "a.dpx").value();
+  const auto with_byte = [&](char value) {
+    std::string changed = bytes;
+    changed[801] = value;
+    std::ofstream(folder / "b.dpx", std::ios::binary) << changed;
+    return read_or_fail(folder / "b.dpx").color.pixels;
+  };
+  const auto logarithm = with_byte(3), camera = with_byte(6), other = with_byte(0);
+  EXPECT_NE(logarithm, other);
+  EXPECT_NE(camera, other);
+  EXPECT_EQ(with_byte(1), logarithm) << "printing density";
+  for (const char byte : {5, 7, 8}) {
+    const auto read = with_byte(byte);
+    for (std::size_t i = 0; i < read.size(); ++i) ASSERT_NEAR(read[i], camera[i], 1e-6) << static_cast<int>(byte);
+  }
+}
+
 }  // namespace
 }  // namespace afterglow
