@@ -33,9 +33,9 @@ std::string reason_against(const Look& look, const Pass& pass) {
 }
 
 /// Scene-linear light of what the table is asked for.
-std::array<float, 3> light_of(Shaper shaper, const std::array<double, 3>& v) {
+std::array<float, 3> light_of(const Cube& cube, const std::array<double, 3>& v) {
   std::array<float, 3> out{};
-  if (shaper == Shaper::none) {
+  if (cube.shaper == Shaper::none) {
     for (std::size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(srgb_to_linear(v[i]));
     return out;
   }
@@ -43,12 +43,13 @@ std::array<float, 3> light_of(Shaper shaper, const std::array<double, 3>& v) {
   static const auto curve = (*find_input_space("acescct"))->to_linear;
   const std::array<double, 3> ap1{curve(v[0]), curve(v[1]), curve(v[2])};
   for (std::size_t i = 0; i < 3; ++i)
-    out[i] = static_cast<float>(std::max(0.0, matrix[i][0] * ap1[0] + matrix[i][1] * ap1[1] + matrix[i][2] * ap1[2]));
+    out[i] = static_cast<float>(std::max(cube.keeps_negative ? -1e30 : 0.0,
+                                         matrix[i][0] * ap1[0] + matrix[i][1] * ap1[1] + matrix[i][2] * ap1[2]));
   return out;
 }
 
 /// Display codes of these inputs of the table.
-Result<std::vector<std::array<float, 3>>> codes_of(Shaper shaper, const std::vector<std::array<double, 3>>& inputs,
+Result<std::vector<std::array<float, 3>>> codes_of(Cube& cube, const std::vector<std::array<double, 3>>& inputs,
                                                    const Through& through) {
   constexpr int kWidth = 1024;
   const int height = (static_cast<int>(inputs.size()) + kWidth - 1) / kWidth;
@@ -56,11 +57,12 @@ Result<std::vector<std::array<float, 3>>> codes_of(Shaper shaper, const std::vec
   picture.color = Image(kWidth, height, 4);
   picture.data_window = picture.display_window = {0, 0, kWidth, height};
   for (std::size_t i = 0; i < static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height); ++i) {
-    const auto light = light_of(shaper, inputs[std::min(i, inputs.size() - 1)]);
+    const auto light = light_of(cube, inputs[std::min(i, inputs.size() - 1)]);
     std::copy(light.begin(), light.end(), &picture.color.pixels[i * 4]);
     picture.color.pixels[i * 4 + 3] = 1;
   }
   AFTERGLOW_CHECK(through(picture));
+  cube.of_view = picture.view;
   std::vector<std::array<float, 3>> codes(inputs.size());
   for (std::size_t i = 0; i < codes.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
@@ -93,8 +95,9 @@ std::array<double, 3> tetrahedral(const Cube& cube, const std::array<double, 3>&
 // The format has no quotation marks inside of its texts.
 std::string cube_text(const Cube& cube, std::string title) {
   std::ranges::replace(title, '"', '\'');
-  std::string out = fmt::format("# {} to sRGB codes of a display\nTITLE \"{}\"\nLUT_3D_SIZE {}\n",
-                                cube.shaper == Shaper::log ? "ACEScct" : "sRGB codes", title, cube.size);
+  std::string out =
+      fmt::format("# {} to {}\nTITLE \"{}\"\nLUT_3D_SIZE {}\n", cube.shaper == Shaper::log ? "ACEScct" : "sRGB codes",
+                  cube.of_view ? "the codes of the look's view" : "sRGB codes of a display", title, cube.size);
   for (const auto& c : cube.codes) out += fmt::format("{:.7f} {:.7f} {:.7f}\n", c[0], c[1], c[2]);
   return out;
 }
@@ -160,14 +163,15 @@ std::vector<std::string> unbakeable(const Look& look) {
   return out;
 }
 
-Result<Cube> bake_cube(int size, Shaper shaper, const Through& through) {
+Result<Cube> bake_cube(int size, Shaper shaper, bool keeps_negative, const Through& through) {
   std::vector<std::array<double, 3>> inputs;
   const double last = size - 1;
   for (int b = 0; b < size; ++b)
     for (int g = 0; g < size; ++g)
       for (int r = 0; r < size; ++r) inputs.push_back({r / last, g / last, b / last});
-  AFTERGLOW_TRY(auto codes, codes_of(shaper, inputs, through));
-  return Cube{size, shaper, std::move(codes)};
+  Cube cube{size, shaper, keeps_negative};
+  AFTERGLOW_TRY(cube.codes, codes_of(cube, inputs, through));
+  return cube;
 }
 
 Result<BakeError> bake_error(const Cube& cube, int count, const Through& through) {
@@ -175,7 +179,8 @@ Result<BakeError> bake_error(const Cube& cube, int count, const Through& through
   const auto next = [&] { return (state = state * 1664525 + 1013904223) / 4294967296.0; };
   std::vector<std::array<double, 3>> inputs;
   for (int i = 0; i < count; ++i) inputs.push_back({next(), next(), next()});
-  AFTERGLOW_TRY(const auto exact, codes_of(cube.shaper, inputs, through));
+  Cube asked{cube.size, cube.shaper, cube.keeps_negative};
+  AFTERGLOW_TRY(const auto exact, codes_of(asked, inputs, through));
   BakeError error;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto found = tetrahedral(cube, inputs[i]);

@@ -23,13 +23,15 @@ std::vector<std::string> unbakeable(const Look& look);
 struct Cube {
   int size = 0;
   Shaper shaper = Shaper::none;
-  std::vector<std::array<float, 3>> codes;  ///< sRGB codes 0…1 of the display; red runs fastest
+  bool keeps_negative = false;              ///< the look sees colours outside of Rec.709, as `gamut = "keep"` has it
+  bool of_view = false;                     ///< the look ends in a view (Picture::view), whose codes they are
+  std::vector<std::array<float, 3>> codes;  ///< codes 0…1 of the display, sRGB where it is no view; red runs fastest
 };
 
 /// Runs scene-linear colours through the look, in place.
 using Through = std::function<Result<void>(Picture& colours)>;
 
-Result<Cube> bake_cube(int size, Shaper shaper, const Through& through);
+Result<Cube> bake_cube(int size, Shaper shaper, bool keeps_negative, const Through& through);
 
 /// Differences between the table, read tetrahedrally, and the look itself, in 8-bit codes, over `count` colours of its
 /// domain.

@@ -71,7 +71,7 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
   AFTERGLOW_TRY(const auto session, Session::open(file, options, console.diagnostics()));
   const BuildContext moment = usual_context(*look.preset, {}, assumed.frame, assumed.fps);
   const Through through = [&](Picture& colours) { return session->process(colours, moment); };
-  AFTERGLOW_TRY(const Cube cube, bake_cube(a.size, shaper, through));
+  AFTERGLOW_TRY(const Cube cube, bake_cube(a.size, shaper, look.preset->keeps_negative().value_or(false), through));
   AFTERGLOW_TRY(const BakeError error, bake_error(cube, 20000, through));
   AFTERGLOW_CHECK(write_cube(cube, look.preset->name(), a.output));
   const bool brings_down = std::ranges::any_of(look.spaces, [](const EntrySpace& s) { return s.behind != s.before; });
@@ -81,7 +81,9 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
     console.warning(
         "the look may change from frame to frame, a table does not: it is that of frame 1; --frame chooses");
   fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
-             shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
+             fmt::format("{} to {}", shaper == Shaper::log ? "ACEScct" : "sRGB codes",
+                         cube.of_view ? "the codes of the look's view" : "sRGB codes"),
+             error.most, error.mean);
   fmt::print("{}", use_text(a, shaper, extension, console));
   return {};
 }
@@ -111,7 +113,8 @@ Command add_bake_command(CLI::App& program) {
       ->transform(frame_rates())
       ->type_name("N");
   app->footer(
-      "The table gives sRGB codes of a display. Effects that look around, at places or back are refused.\n"
+      "The table gives sRGB codes of a display, or those of the view that the look ends in. Effects that look around, "
+      "at places or back are refused.\n"
       "Example: afterglow bake look.lua -o look.cube --size 33 --shaper log");
   return {app, [arguments](Console& console) { return run_bake(*arguments, console); }};
 }

@@ -107,6 +107,11 @@ class VideoSink : public FrameSink {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
     plan.pack.space = video_space(options_, *plan.pack.layout, picture.view);
+    if (picture.view && !options_.space && describe_view(options_, plan))
+      diagnostics_.note(
+          fmt::format("{}: the codes of the view are stored with 8 bits; of an HDR view they show steps: "
+                      "--pix-fmt yuv420p10le has 10",
+                      file_.string()));
     times_.begin(job, last_wanted_, plan);
     if (picture.facts) keep_facts(*picture.facts, plan, held);
     constexpr int kPq = 16;

@@ -25,6 +25,7 @@ struct ContainerFacts {
   std::uint32_t line_padding = 0;           ///< DPX: bytes behind each line that its header does not tell of
   double exposure = 1;                      ///< Radiance: what the light was multiplied by
   std::optional<int> orientation;           ///< Radiance, WebP, PNG: as Exif has it, where the library may not find it
+  int deeper_bits = 0;                      ///< HEIF, AVIF: of a sample, where they are more than the 8 that are read
   bool srgb = false;                        ///< PNG sRGB chunk
   bool adobe_rgb = false;                   ///< EXIF of a JPEG says so
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455

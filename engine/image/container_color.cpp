@@ -37,23 +37,24 @@ bool use_numbers(const ContainerFacts::Codes& codes, const std::string& name, Co
 void use_png_chunks(const ContainerFacts& container, const std::string& name, ColorEncoding& encoding,
                     Diagnostics& diagnostics) {
   if (container.srgb) return;
+  const Matrix3 matrix = container.primaries ? to_rec709(*container.primaries) : kIdentity;
+  const bool own = nearly_equal(matrix, kIdentity, 3e-3);
   if (container.gamma) {
-    // What programs write that mean sRGB but do not know the sRGB chunk (PNG, 11.3.2.5); other numbers mean what they
-    // say.
+    // What programs write that mean sRGB but do not know the sRGB chunk (PNG, 11.3.2.5), with its primaries where they
+    // say any; other numbers, and other primaries, mean what they say.
     constexpr double kSrgb = 0.45455;
     const double exponent = 1 / *container.gamma;
     if (std::abs(exponent - 1) < 0.01) {
       encoding.curve = TransferCurve::linear;
-    } else if (std::abs(*container.gamma - kSrgb) > 1e-5 && exponent > 0.1 && exponent < 10) {
+    } else if ((!own || std::abs(*container.gamma - kSrgb) > 1e-5) && exponent > 0.1 && exponent < 10) {
       encoding.curve = TransferCurve::power;
       encoding.exponent = exponent;
     }
   }
   if (!container.primaries || encoding.grey) return;
-  const Matrix3 matrix = to_rec709(*container.primaries);
   if (matrix == Matrix3{}) {
     diagnostics.warn(fmt::format("{}: its chromaticities make no sense; Rec.709 is assumed", name));
-  } else if (!nearly_equal(matrix, kIdentity, 3e-3)) {
+  } else if (!own) {
     encoding.matrix = matrix;
   }
 }

@@ -36,6 +36,7 @@ class Heif {
         take(height, "heif_image_get_height") && take(release_image, "heif_image_release") &&
         take(profile_size, "heif_image_handle_get_raw_color_profile_size") &&
         take(profile, "heif_image_handle_get_raw_color_profile") &&
+        take(bits, "heif_image_handle_get_luma_bits_per_pixel") &&
         take(codes, "heif_image_handle_get_nclx_color_profile") && take(free_codes, "heif_nclx_color_profile_free");
   }
   bool whole() const { return whole_; }
@@ -53,6 +54,7 @@ class Heif {
   int (*height)(const void*, int) = nullptr;
   void (*release_image)(const void*) = nullptr;
   std::size_t (*profile_size)(const void*) = nullptr;
+  int (*bits)(const void*) = nullptr;
   HeifError (*profile)(const void*, void*) = nullptr;
   HeifError (*codes)(const void*, HeifCodes**) = nullptr;
   void (*free_codes)(HeifCodes*) = nullptr;
@@ -94,6 +96,7 @@ Result<void> check_heif(const std::filesystem::path& file, ContainerFacts& facts
     return {};  // whose reader says why
   const std::unique_ptr<void, void (*)(const void*)> held(handle, heif.release);
   take_colors(heif, handle, facts);
+  if (const int bits = heif.bits(handle); bits > 8) facts.deeper_bits = bits;
   const int chroma = heif.has_alpha(handle) != 0 ? kInterleavedRgba : kInterleavedRgb;
   if (heif.decode(handle, &image, kRgb, chroma, nullptr).code != 0 || !image) return {};
   const std::unique_ptr<void, void (*)(const void*)> decoded(image, heif.release_image);

@@ -66,7 +66,9 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, cons
 bool gives_unit(const Lut& loaded) {
   if (loaded.steps.empty()) return false;
   const LutStep& last = loaded.steps.back();
-  if (last.kind != LutKind::table1d && last.kind != LutKind::table3d && last.kind != LutKind::table_half) return false;
+  if (last.kind != LutKind::table1d && last.kind != LutKind::table3d && last.kind != LutKind::table3d_linear &&
+      last.kind != LutKind::table_half)
+    return false;
   // Its numbers are all that is left of the image; what fills up rows is 0.
   const auto first = loaded.table.begin() + static_cast<std::ptrdiff_t>(last.row) * loaded.size.width * 4;
   return std::all_of(first, loaded.table.end(), [](float value) { return value >= 0.0f && value <= 1.0f; });

@@ -25,7 +25,8 @@ enum class LutKind {
   range = 4,    ///< 1 pixel (scale, offset, low, high): c' = clamp(scale·c + offset, low, high)
   cdl = 5,      ///< 4 pixels: slope, offset, power, (saturation, 1: held to 0…1 as ASC says; 0: not held)
   power = 6,    ///< 1 pixel (exponents, style of negatives: 0 cut off, 1 mirrored, 2 left as they are)
-  table_half = 7,  ///< 65536 colours, 256 a row, by the bits of c as a half float, linear between neighbours
+  table_half = 7,      ///< 65536 colours, 256 a row, by the bits of c as a half float, linear between neighbours
+  table3d_linear = 8,  ///< as table3d, linear between the eight entries around c, where the file asks for it (CLF)
 };
 
 struct LutStep {

@@ -101,7 +101,8 @@ bool LutTaker::add_table(const OCIO::Lut1DTransform& table) {
 
 bool LutTaker::add_table(const OCIO::Lut3DTransform& table) {
   const auto size = static_cast<int>(table.getGridSize());
-  begin(LutKind::table3d, size, size * ((size + 1) / 2));
+  const bool linear = table.getInterpolation() == OCIO::INTERP_LINEAR;  // said by the file: elsewhere it is a default
+  begin(linear ? LutKind::table3d_linear : LutKind::table3d, size, size * ((size + 1) / 2));
   for (int r = 0; r < size; ++r)
     for (int g = 0; g < size; ++g)
       for (int b = 0; b < size; ++b) {

@@ -72,7 +72,9 @@ Result<Lut> read(const std::filesystem::path& file, const std::string& correctio
     const auto config = OCIO::Config::CreateRaw();
     const auto transform = OCIO::FileTransform::Create();
     transform->setSrc(std::filesystem::absolute(file).c_str());
-    transform->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+    // Of these, a CLF alone says itself how it wants to be read.
+    const bool says = lower(file.extension().string()) == ".clf";
+    transform->setInterpolation(says ? OCIO::INTERP_DEFAULT : OCIO::INTERP_TETRAHEDRAL);
     transform->setCCCId(correction.empty() ? "0" : correction.c_str());  // of a list, the first
     return LutTaker(config).take(*config->getProcessor(transform)->createGroupTransform());
   } catch (const Unsupported& why) {

@@ -122,6 +122,11 @@ class OiioFile : public PictureFile {
                       path_.string()));
       profile = {};
     }
+    if (container_.deeper_bits > 0)
+      diagnostics.warn_once("bits of HEIF",
+                            fmt::format("{}: has {} bits a sample and is read with 8; of PQ and HLG they "
+                                        "show steps",
+                                        path_.string(), container_.deeper_bits));
     const bool said = use_container_color(container_, profile, path_.string(), encoding, diagnostics);
     if (integer && format_ == "dpx" && use_film_transfer(spec, encoding)) return encoding;
     if (!said && integer && format_ != "pnm")  // whose files say nothing: "Rec709" is the library's guess

@@ -20,6 +20,7 @@
 #include "image/oiio_metadata.h"
 #include "image/output_metadata.h"
 #include "image/output_space.h"
+#include "image/rgbe.h"
 #include "image/strips.h"
 #include "image/write_webp.h"
 
@@ -221,6 +222,9 @@ Result<void> write_rows(const Picture& picture, const OutputFormat& format, cons
     const int rows = std::min(kRows, spec.height - y);
     encode_strip(picture, form, y, rows, strip.data());
     widen(form.type, strip.data(), form.row_bytes(picture) * static_cast<std::size_t>(rows) / form.sample_bytes());
+    if (format.kind == OutputKind::hdr)
+      round_to_rgbe(std::span(reinterpret_cast<float*>(strip.data()),
+                              static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(rows) * 3));
     if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data())) return library_failed(*output);
   }
   const bool closed = output->close();

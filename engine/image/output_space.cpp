@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
+#include <string_view>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -210,6 +211,25 @@ void OutputSpace::encode_colors(const std::uint16_t* rgba, std::size_t pixels, f
     for (std::size_t c = 0; c < 3; ++c) stored[i + c] = table[rgba[i + c]];
     stored[i + 3] = 1;
   }
+}
+
+SpaceCodes space_codes(const OutputSpace& space) {
+  struct Named {
+    std::string_view name;
+    SpaceCodes codes;
+  };
+  constexpr std::array kAll{Named{"rec709", {1, 1}},      Named{"srgb", {1, 13}},       Named{"gamma22", {1, 4}},
+                            Named{"gamma24", {1, 2}},     Named{"linear", {1, 8}},      Named{"pq", {9, 16}},
+                            Named{"hlg", {9, 18}},        Named{"lin_rec2020", {9, 8}}, Named{"lin_p3d65", {12, 8}},
+                            Named{"display_p3", {12, 13}}};
+  for (const auto& [name, codes] : kAll)
+    if (name == space.name()) return codes;
+  return {};
+}
+
+bool must_be_told(const OutputSpace& space) {
+  constexpr std::array<std::string_view, 4> kThese{"display_p3", "adobe_rgb", "pq", "hlg"};
+  return std::ranges::find(kThese, space.name()) != kThese.end();
 }
 
 Result<const OutputSpace*> find_output_space(const std::string& name) {

@@ -62,6 +62,14 @@ class OutputSpace {
   mutable std::vector<float> of_halves_;
 };
 
+/// Primaries and transfer of a space by ITU-T H.273; 2 where there is no number.
+struct SpaceCodes {
+  int primaries = 2, transfer = 2;
+};
+SpaceCodes space_codes(const OutputSpace& space);
+/// Of displays, but not like sRGB: what takes its codes for sRGB shows other colours (P3, Adobe RGB, PQ, HLG).
+bool must_be_told(const OutputSpace& space);
+
 /// The space of this name, for outputs. Empty: none is asked for, null. Errors (usage): unknown.
 Result<const OutputSpace*> find_output_space(const std::string& name);
 

@@ -165,10 +165,11 @@ Result<const Codec*> codec_of(const Container& container, const WriteOptions& op
   return &*codec;
 }
 
+bool has_ten_bits(const Codec& codec) { return std::ranges::find(codec.layouts, "yuv420p10le") != codec.layouts.end(); }
+
 /// Logarithms, HDR and light itself show steps in eight bits.
 bool wants_ten_bits(const Codec& codec, const WriteOptions& options) {
-  const bool has_ten = std::ranges::find(codec.layouts, "yuv420p10le") != codec.layouts.end();
-  return has_ten && options.space && !options.space->of_display();
+  return has_ten_bits(codec) && options.space && !options.space->of_display();
 }
 
 Result<const PixelLayout*> layout_of(const Codec& codec, const WriteOptions& options, bool deep, bool has_alpha,
@@ -228,23 +229,20 @@ std::vector<std::string> video_extensions() {
 }
 
 void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPlan& plan) {
-  struct Tags {
-    std::string_view name;
-    int primaries, transfer, matrix;
-    LumaWeights luma;
-  };
-  constexpr std::array kTags{Tags{"rec709", 1, 1, 1, kBt709Luma},    Tags{"srgb", 1, 13, 1, kBt709Luma},
-                             Tags{"gamma22", 1, 4, 1, kBt709Luma},   Tags{"gamma24", 1, 2, 1, kBt709Luma},
-                             Tags{"linear", 1, 8, 1, kBt709Luma},    Tags{"pq", 9, 16, 9, kBt2020Luma},
-                             Tags{"hlg", 9, 18, 9, kBt2020Luma},     Tags{"lin_rec2020", 9, 8, 9, kBt2020Luma},
-                             Tags{"lin_p3d65", 12, 8, 1, kBt709Luma}, Tags{"display_p3", 12, 13, 1, kBt709Luma}};
-  Tags tags{"", 2, 2, 1, kBt709Luma};
-  for (const Tags& one : kTags)
-    if (one.name == space.name()) tags = one;
-  plan.primaries = tags.primaries;
-  plan.transfer = tags.transfer;
-  plan.matrix = layout.rgb_colors() ? 0 : tags.matrix;
-  plan.pack.luma = tags.luma;
+  constexpr int kBt2020 = 9;
+  const SpaceCodes codes = space_codes(space);
+  const bool wide = codes.primaries == kBt2020;
+  plan.primaries = codes.primaries;
+  plan.transfer = codes.transfer;
+  plan.matrix = layout.rgb_colors() ? 0 : wide ? kBt2020 : 1;
+  plan.pack.luma = wide ? kBt2020Luma : kBt709Luma;
+}
+
+bool describe_view(const WriteOptions& options, VideoPlan& plan) {
+  if (plan.pack.layout->rgb_colors()) plan.primaries = plan.transfer = SpaceCodes{}.primaries;
+  const auto codec = std::ranges::find(codecs(), plan.codec, [](const Codec& c) { return c.name; });
+  return plan.pack.layout->bits == 8 && options.video.pixel_format.empty() && codec != codecs().end() &&
+         has_ten_bits(*codec);
 }
 
 bool is_audio_file(const std::filesystem::path& audio) {

@@ -89,6 +89,10 @@ Result<void> check_video_size(const VideoPlan& plan, Size size, const std::files
 /// Primaries, transfer and matrix of a space, by ITU-T H.273; 2 where there is no number.
 void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPlan& plan);
 
+/// Codes of a view (Picture::view) of a display that nobody knows: RGB says neither primaries nor transfer; YUV goes
+/// with BT.709's, whose matrix it has. Whether they are stored with 8 bits, and the codec has more.
+bool describe_view(const WriteOptions& options, VideoPlan& plan);
+
 /// Frames a second that every container and encoder was seen to take.
 inline constexpr double kSlowestRate = 0.001, kFastestRate = 1000;
 

@@ -19,6 +19,11 @@ Result<void> check_video_encoder(const VideoPlan& plan, const fs::path& file) {
 }
 
 Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, VideoPlan plan, Diagnostics& diagnostics) {
+  const OutputSpace& space = *plan.pack.space;
+  if ((plan.container == "gif" || plan.container == "apng") && (must_be_told(space) || !space.of_display()))
+    diagnostics.warn(fmt::format("{}: {} files do not say that they hold '{}': players take them for sRGB{}",
+                                 file.filename().string(), plan.container, space.name(),
+                                 space.of_display() ? "" : ", and 8 bits show steps in it"));
   if (plan.shows_steps)
     diagnostics.warn(
         fmt::format("{}: {} with alpha has 8 bits, which show steps in this --output-space; --pix-fmt "

@@ -19,6 +19,7 @@
 #include "image/kept_values.h"
 #include "image/metadata.h"
 #include "image/output_metadata.h"
+#include "image/output_space.h"
 #include "image/png_filter.h"
 #include "image/strips.h"
 
@@ -118,6 +119,22 @@ void write_texts(OutputFile& out, const Metadata& metadata) {
   }
 }
 
+/// What is not to be taken for sRGB: by the numbers of ITU-T H.273 where it has such, else as power and primaries.
+void write_space(const OutputSpace& space, OutputFile& out) {
+  if (!must_be_told(space)) return;
+  const auto [primaries, transfer] = space_codes(space);
+  if (primaries != SpaceCodes{}.primaries && transfer != SpaceCodes{}.transfer)
+    return write_chunk(out, "cICP", {static_cast<char>(primaries), static_cast<char>(transfer), '\0', '\1'});
+  constexpr std::uint32_t kAdobeGamma = 45471;  // 256/563
+  std::string gamma, chromaticities;
+  put_number(gamma, kAdobeGamma);
+  const Chromaticities& p = space.primaries();
+  for (const auto& xy : {p.white, p.red, p.green, p.blue})
+    for (const double v : xy) put_number(chromaticities, static_cast<std::uint32_t>(std::lround(v * 100000)));
+  write_chunk(out, "gAMA", gamma);
+  write_chunk(out, "cHRM", chromaticities);
+}
+
 void write_header(const Picture& picture, const StripForm& form, OutputFile& out) {
   out.write("\x89PNG\r\n\x1a\n", 8);
   std::string head;
@@ -131,6 +148,7 @@ void write_header(const Picture& picture, const StripForm& form, OutputFile& out
     put_number(gamma, 45455);
     write_chunk(out, "gAMA", gamma);
   }
+  if (form.space && !form.view) write_space(*form.space, out);
   if (!picture.facts) return;
   const Metadata metadata = kept_metadata(*picture.facts);
   write_resolution(out, metadata);

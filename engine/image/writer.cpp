@@ -241,6 +241,25 @@ void tell_of_time_code(const Picture& picture, const fs::path& file, Diagnostics
                                                  file.string(), text));
 }
 
+/// Codes that a file has no words for, or the wrong ones.
+void tell_of_space(const Picture& picture, const OutputFormat& format, const WriteOptions& options,
+                   const fs::path& file, Diagnostics& diagnostics) {
+  const StripForm form = strip_form(picture, format, options);
+  if (!is_integer(form.type)) return;
+  const std::string extension = lower(file.extension().string());
+  const std::string what = form.space ? fmt::format("'{}'", form.space->name()) : "codes of a view";
+  if (extension == ".jp2" && (form.space || form.view)) {
+    diagnostics.warn_once("space of jp2", fmt::format("{}: holds {} and says that it is sRGB, as all JPEG 2000 files "
+                                                      "that are written: tell the next program what it reads",
+                                                      file.string(), what));
+  } else if (form.space && must_be_told(*form.space) && format.kind != OutputKind::png) {
+    diagnostics.warn_once(
+        "space untold",
+        fmt::format("{}: does not say that it holds {}: programs take it for sRGB until they are told; PNG says it",
+                    file.string(), what));
+  }
+}
+
 }  // namespace
 
 Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options,
@@ -252,6 +271,7 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
     severity == Severity::warning ? diagnostics.warn(text) : diagnostics.note(text);
   });
   tell_of_time_code(picture, file, diagnostics);
+  tell_of_space(picture, *format, options, file, diagnostics);
   try {
     AFTERGLOW_CHECK(check_picture(picture));
     Temporary temporary(file);

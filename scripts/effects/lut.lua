@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- LUT: colours by a look-up table in a file. OpenColorIO reads the file (.cube of Adobe and Resolve, .3dl, .csp, .spi1d, .spi3d, .clf, …); its steps
 -- are done in order: matrices and ranges (the domain of a .cube), curves linearly between their entries, cubes tetrahedrally between the
--- four nearest. Tables know colours from 0 to 1 alone: what is outside of a table's domain gets the colour of its edge.
+-- four nearest (a .clf may ask for all eight). Tables know colours from 0 to 1 alone: what is outside of a table's domain gets the colour of its edge.
 -- `input` says how colours are encoded before the look-up, `output` what the table gives; tables for finished pictures want "srgb" (the
 -- default) or a power, those for scenes the logarithm of a camera or of ACES, with its primaries: math.md §24 has curves and sources. Alpha stays.
 local fx = require "afterglow"

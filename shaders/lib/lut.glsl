@@ -2,7 +2,7 @@
 // Look-up tables as g:lookup lays them out (see engine/image/lut_file.h): where the numbers are, and what to do with them. The reads stand in
 // the shader itself, where the engine can choose how images are read.
 
-const int kLutMatrix = 1, kLutTable1d = 2, kLutTable3d = 3, kLutRange = 4, kLutCdl = 5, kLutPower = 6, kLutTableHalf = 7;
+const int kLutMatrix = 1, kLutTable1d = 2, kLutTable3d = 3, kLutRange = 4, kLutCdl = 5, kLutPower = 6, kLutTableHalf = 7, kLutTable3dLinear = 8;
 
 /// Entry i of a one-dimensional table.
 ivec2 lut_entry(int row, int i) { return ivec2(i & 255, row + (i >> 8)); }

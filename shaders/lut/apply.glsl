@@ -63,6 +63,20 @@ vec3 table_3d(vec3 c, int row, int size) {
          fetch(table, entry + 1 + step_b).rgb * weights.w;
 }
 
+vec3 table_3d_linear(vec3 c, int row, int size) {
+  vec3 at = clamp(c, 0.0, 1.0) * float(size - 1);
+  ivec3 low = min(ivec3(at), ivec3(size - 2));
+  vec3 f = at - vec3(low);
+  vec3 sum = vec3(0.0);
+  for (int b = 0; b < 2; ++b) {
+    ivec2 entry = lut_entry(row, size, low + ivec3(0, 0, b));
+    vec3 below = fetch(table, entry).rgb * (1.0 - f.r) + fetch(table, entry + ivec2(1, 0)).rgb * f.r;
+    vec3 above = fetch(table, entry + ivec2(0, 1)).rgb * (1.0 - f.r) + fetch(table, entry + ivec2(1, 1)).rgb * f.r;
+    sum += (below * (1.0 - f.g) + above * f.g) * (b == 0 ? 1.0 - f.b : f.b);
+  }
+  return sum;
+}
+
 vec3 range_step(vec3 c, int row) {
   vec4 r = fetch(table, ivec2(0, row));
   return clamp(c * r.x + r.y, r.z, r.w);
@@ -83,6 +97,7 @@ vec3 one_step(vec3 c, int kind, int row, int size) {
   if (kind == kLutMatrix) return matrix_step(c, row);
   if (kind == kLutTable1d) return table_1d(c, row, size);
   if (kind == kLutTable3d) return table_3d(c, row, size);
+  if (kind == kLutTable3dLinear) return table_3d_linear(c, row, size);
   if (kind == kLutRange) return range_step(c, row);
   if (kind == kLutCdl) return cdl_step(c, row);
   if (kind == kLutPower) return power_step(c, row);
@@ -92,7 +107,7 @@ vec3 one_step(vec3 c, int kind, int row, int size) {
 
 // Tables know 0…1 alone, and most give no more: there sRGB is a polynomial.
 vec3 first_codes(vec3 c) {
-  bool held = kind1 == kLutTable1d || kind1 == kLutTable3d;
+  bool held = kind1 == kLutTable1d || kind1 == kLutTable3d || kind1 == kLutTable3dLinear;
   if (held && before == kEncodingSrgb) return srgb_from_linear_unit(clamp(c, 0.0, 1.0));
   return encoded(c, before);
 }

@@ -57,6 +57,23 @@ TEST_F(Bake, NamesWithQuotationMarksAndOtherCases) {
               HasSubstr("named.xyz: error: '.xyz' is no format of tables that can be written; allowed: .cube"));
 }
 
+/// Of ACEScct's colours, which lie outside of Rec.709: no clipping on the way where the look says so.
+TEST_F(Bake, ALookThatKeepsColoursGetsThemAll) {
+  const auto green = [&](const std::string& gamut) {
+    write("view.lua", "local fx = require \"afterglow\"\nreturn fx.stack { " + gamut +
+                          "fx.ocio_display { config = \"ocio/aces.ocio\", display = \"P3-D65 - Display\" } }\n");
+    const Outcome outcome = run({"bake", "view.lua", "-o", "view.cube", "--size", "9", "--shaper", "log"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("ACEScct to the codes of the look's view"));
+    std::istringstream lines(read("view.cube"));
+    std::string line;
+    for (int i = -3; i <= 4 * 9 + 1; ++i) std::getline(lines, line);  // red 1, green 4, blue 0 of 8
+    return std::stod(line);
+  };
+  EXPECT_GT(green(""), 0.3);
+  EXPECT_LT(green("gamut = \"keep\", "), 0.05);
+}
+
 TEST_F(Bake, PicturesAndCodes) {
   const Outcome outcome = run({"bake", "look.lua", "-o", "strip.png", "--size", "16"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;

@@ -119,6 +119,28 @@ TEST_F(VideoOut, UntoldColoursAreBt709) {
   EXPECT_EQ(hdr.at("color_space"), "bt2020nc");
 }
 
+TEST_F(VideoOut, CodesOfAViewAreNotSaidToBeSrgb) {
+  make_frames(1);
+  write("view.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.ocio_display { config = \"ocio/aces.ocio\" } }\n");
+  ASSERT_EQ(run({"run", "view.lua", "in/1001.ppm", "-o", "v.mkv", "--codec", "ffv1"}).exit_code, kDone);
+  const auto stream = stream_of("v.mkv");
+  EXPECT_EQ(stream.value("color_transfer", "unknown"), "unknown");
+  EXPECT_EQ(stream.value("color_primaries", "unknown"), "unknown");
+  const Outcome made = run({"run", "view.lua", "in/1001.ppm", "-o", "v.webm", "-v"});
+  EXPECT_THAT(made.err, HasSubstr("v.webm: the codes of the view are stored with 8 bits"));
+}
+
+TEST_F(VideoOut, PicturesThatMoveTellWhatTheyCannotSay) {
+  make_frames(1);
+  const auto told = [&](const char* space) {
+    return run({"run", "look.lua", "in/1001.ppm", "-o", "a.apng", "--output-space", space}).err;
+  };
+  EXPECT_THAT(told("pq"), HasSubstr("do not say that they hold 'pq': players take them for sRGB, and 8 bits show"));
+  EXPECT_THAT(told("display_p3"), HasSubstr("do not say that they hold 'display_p3': players take them for sRGB\n"));
+  EXPECT_THAT(told("srgb"), IsEmpty());
+}
+
 /// In the frame's own header, which libavcodec leaves at BT.709, for those who ask it before the container.
 TEST_F(VideoOut, DnxhrSaysItsMatrixInEachFrame) {
   make_frames(2, 256, 128);

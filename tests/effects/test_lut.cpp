@@ -54,7 +54,7 @@ DoubleImage by_ocio(const DoubleImage& source, const std::filesystem::path& file
   OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
   const auto transform = OCIO::FileTransform::Create();
   transform->setSrc(file.c_str());
-  transform->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+  transform->setInterpolation(file.extension() == ".clf" ? OCIO::INTERP_DEFAULT : OCIO::INTERP_TETRAHEDRAL);
   transform->setCCCId("0");
   const auto cpu = OCIO::Config::CreateRaw()->getProcessor(transform)->getOptimizedCPUProcessor(
       OCIO::BIT_DEPTH_F32, OCIO::BIT_DEPTH_F32, OCIO::OPTIMIZATION_NONE);
@@ -147,6 +147,11 @@ TEST_F(Effects, LutProcessListsAgreeWithOpenColorIo) {
                           "</maxInValue><minOutValue>0</minOutValue><maxOutValue>1</maxOutValue></Range>"
                           "<LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"5 3\">" +
                           random_rows(5) + "</Array></LUT1D>"));
+  for (const char* interpolation : {"trilinear", "tetrahedral"})
+    agree_with_ocio(fmt::format("{}.clf", interpolation),
+                    process(fmt::format("<LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\" interpolation=\"{}\"><Array "
+                                        "dim=\"9 9 9 3\">{}</Array></LUT3D>",
+                                        interpolation, random_rows(729))));
   std::string half;
   for (int i = 0; i < 65536; ++i) half += fmt::format("{:.5f}\n", std::sin(i * 0.001));
   agree_with_ocio("half.clf", process("<LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\" halfDomain=\"true\"><Array "

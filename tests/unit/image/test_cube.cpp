@@ -185,7 +185,7 @@ TEST(Lut, WhatLeadsElsewhereIsRefusedInEveryFormat) {
 }
 
 TEST(Lut, TablesOfUnitEntriesAtTheEndGiveNoMore) {
-  for (const auto kind : {LutKind::table1d, LutKind::table3d, LutKind::table_half}) {
+  for (const auto kind : {LutKind::table1d, LutKind::table3d, LutKind::table3d_linear, LutKind::table_half}) {
     EXPECT_TRUE(gives_unit(ending_with(kind, 0)));
     EXPECT_TRUE(gives_unit(ending_with(kind, 1)));
     EXPECT_FALSE(gives_unit(ending_with(kind, 1.001f)));

@@ -165,7 +165,7 @@ TEST_F(Png, PrimariesChunk) {
   EXPECT_EQ(picture.color.at(0, 0)[1], 0);
   EXPECT_EQ(picture.sanitized.negative, 2u);
   for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(picture.color.at(1, 0)[c], srgb_to_linear(128 / 255.0), 1e-4);  // white stays white
+    EXPECT_NEAR(picture.color.at(1, 0)[c], std::pow(128 / 255.0, 1 / 0.45455), 1e-4);  // white stays white
   ReadOptions keep;
   keep.keep_negative = true;
   Diagnostics silent;
