@@ -49,7 +49,7 @@ std::array<float, 3> light_of(const Cube& cube, const std::array<double, 3>& v) 
 }
 
 /// Display codes of these inputs of the table.
-Result<std::vector<std::array<float, 3>>> codes_of(Cube& cube, const std::vector<std::array<double, 3>>& inputs,
+Result<std::vector<std::array<float, 3>>> codes_of(const Cube& cube, const std::vector<std::array<double, 3>>& inputs,
                                                    const Through& through) {
   constexpr int kWidth = 1024;
   const int height = (static_cast<int>(inputs.size()) + kWidth - 1) / kWidth;
@@ -62,7 +62,6 @@ Result<std::vector<std::array<float, 3>>> codes_of(Cube& cube, const std::vector
     picture.color.pixels[i * 4 + 3] = 1;
   }
   AFTERGLOW_CHECK(through(picture));
-  cube.of_view = picture.view;
   std::vector<std::array<float, 3>> codes(inputs.size());
   for (std::size_t i = 0; i < codes.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
@@ -179,8 +178,7 @@ Result<BakeError> bake_error(const Cube& cube, int count, const Through& through
   const auto next = [&] { return (state = state * 1664525 + 1013904223) / 4294967296.0; };
   std::vector<std::array<double, 3>> inputs;
   for (int i = 0; i < count; ++i) inputs.push_back({next(), next(), next()});
-  Cube asked{cube.size, cube.shaper, cube.keeps_negative};
-  AFTERGLOW_TRY(const auto exact, codes_of(asked, inputs, through));
+  AFTERGLOW_TRY(const auto exact, codes_of(cube, inputs, through));
   BakeError error;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto found = tetrahedral(cube, inputs[i]);

@@ -24,7 +24,7 @@ struct Cube {
   int size = 0;
   Shaper shaper = Shaper::none;
   bool keeps_negative = false;              ///< the look sees colours outside of Rec.709, as `gamut = "keep"` has it
-  bool of_view = false;                     ///< the look ends in a view (Picture::view), whose codes they are
+  bool of_view = false;                     ///< the look ends in a view, whose codes they are
   std::vector<std::array<float, 3>> codes;  ///< codes 0…1 of the display, sRGB where it is no view; red runs fastest
 };
 

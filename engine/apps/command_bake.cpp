@@ -71,7 +71,8 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
   AFTERGLOW_TRY(const auto session, Session::open(file, options, console.diagnostics()));
   const BuildContext moment = usual_context(*look.preset, {}, assumed.frame, assumed.fps);
   const Through through = [&](Picture& colours) { return session->process(colours, moment); };
-  AFTERGLOW_TRY(const Cube cube, bake_cube(a.size, shaper, look.preset->keeps_negative().value_or(false), through));
+  AFTERGLOW_TRY(Cube cube, bake_cube(a.size, shaper, look.preset->keeps_negative().value_or(false), through));
+  cube.of_view = ends_in_view(look.spaces);
   AFTERGLOW_TRY(const BakeError error, bake_error(cube, 20000, through));
   AFTERGLOW_CHECK(write_cube(cube, look.preset->name(), a.output));
   const bool brings_down = std::ranges::any_of(look.spaces, [](const EntrySpace& s) { return s.behind != s.before; });

@@ -63,18 +63,18 @@ vec3 table_3d(vec3 c, int row, int size) {
          fetch(table, entry + 1 + step_b).rgb * weights.w;
 }
 
+vec3 table_face(ivec2 entry, vec2 f) {
+  vec3 below = fetch(table, entry).rgb * (1.0 - f.r) + fetch(table, entry + ivec2(1, 0)).rgb * f.r;
+  vec3 above = fetch(table, entry + ivec2(0, 1)).rgb * (1.0 - f.r) + fetch(table, entry + ivec2(1, 1)).rgb * f.r;
+  return below * (1.0 - f.g) + above * f.g;
+}
+
 vec3 table_3d_linear(vec3 c, int row, int size) {
   vec3 at = clamp(c, 0.0, 1.0) * float(size - 1);
   ivec3 low = min(ivec3(at), ivec3(size - 2));
   vec3 f = at - vec3(low);
-  vec3 sum = vec3(0.0);
-  for (int b = 0; b < 2; ++b) {
-    ivec2 entry = lut_entry(row, size, low + ivec3(0, 0, b));
-    vec3 below = fetch(table, entry).rgb * (1.0 - f.r) + fetch(table, entry + ivec2(1, 0)).rgb * f.r;
-    vec3 above = fetch(table, entry + ivec2(0, 1)).rgb * (1.0 - f.r) + fetch(table, entry + ivec2(1, 1)).rgb * f.r;
-    sum += (below * (1.0 - f.g) + above * f.g) * (b == 0 ? 1.0 - f.b : f.b);
-  }
-  return sum;
+  ivec2 entry = lut_entry(row, size, low);
+  return table_face(entry, f.rg) * (1.0 - f.b) + table_face(entry + lut_step_b(size, low.b), f.rg) * f.b;
 }
 
 vec3 range_step(vec3 c, int row) {
