@@ -124,8 +124,9 @@ typedef enum afterglow_severity { AFTERGLOW_NOTE = 0, AFTERGLOW_WARNING = 1 } af
  * call. May be called on any thread, but not on two at once for one object. Must not call back into the library. */
 typedef void (*afterglow_message_callback)(void *user, afterglow_severity severity, afterglow_string message);
 
-/* A stack with `follow` may have something for afterglow_stack_update, which says what: it is called when a build begins
- * or ends, too, and after what the caller sets. Called on threads of the library: it only wakes the caller's own. Must not call back into the library. */
+/* A stack with `follow` may have something for afterglow_stack_update, which says what: it is called when a build
+ * begins or ends, too, and after what the caller sets. Called on threads of the library: it only wakes the caller's
+ * own. Must not call back into the library. */
 typedef void (*afterglow_wake_callback)(void *user);
 
 /* ---- devices ------------------------------------------------------------------------------------------------------*/

@@ -120,9 +120,11 @@ void Backend::forget_what_went(const Stack* before) {
 /// The last frame, by what the stack says now; null before there is one.
 const Build* Backend::seen() {
   if (build_) return build_.get();
-  if (!seen_ && shape_)
-    if (auto build = source_->evaluate(*shape_)) seen_ = *std::move(build);
-  return seen_.get();
+  if (!seen_ && shape_) {
+    auto build = source_->evaluate(*shape_);
+    seen_ = build ? *std::move(build) : nullptr;
+  }
+  return seen_ ? seen_->get() : nullptr;
 }
 
 Result<void> Backend::prepare(const Shape& shape) {

@@ -153,7 +153,7 @@ class Backend {
   // Of the last frame.
   std::optional<Shape> shape_;
   std::shared_ptr<const Build> build_;
-  std::shared_ptr<const Build> seen_;  ///< by what was set since
+  std::optional<std::shared_ptr<const Build>> seen_;  ///< by what was set since; null: it cannot be made
   std::vector<Skipped> skipped_;
   FrameReport last_;
   std::uint64_t clamped_ = 0;

@@ -153,17 +153,20 @@ class Followed : public Source {
   }
 
   Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override {
-    const bool new_shape = !context_ || context_->size != shape.context.size ||
-                           context_->auxiliary != shape.context.auxiliary || encoding_ != shape.encoding;
-    context_ = shape.context;
-    encoding_ = shape.encoding;
+    const bool new_shape = !shape_ || shape_->context.size != shape.context.size ||
+                           shape_->context.auxiliary != shape.context.auxiliary || shape_->encoding != shape.encoding;
     live_->set_context(shape.context, shape.encoding);
     if (new_shape) {
       live_->settle();
       if (live_->update()) tell_messages();
     }
-    AFTERGLOW_TRY(auto build, live_->stack()->evaluate(shape.context));
-    live_->also_follow(build->files);
+    auto build = live_->stack()->evaluate(shape.context);
+    if (!build) {
+      if (shape_) live_->set_context(shape_->context, shape_->encoding);  // edits are built for what can be made
+      return build;
+    }
+    shape_ = shape;
+    live_->also_follow((*build)->files);
     return build;
   }
 
@@ -208,8 +211,7 @@ class Followed : public Source {
   Diagnostics& diagnostics_;
   mutable Diagnostics silent_;  ///< messages of builds come with the status of the one that is shown
   std::unique_ptr<LiveStack> live_;
-  std::optional<BuildContext> context_;
-  std::optional<DisplayEncoding> encoding_;
+  std::optional<Shape> shape_;  ///< of the last frame that could be made
   NewMessages printed_, warned_;
   std::string told_error_;
 };

@@ -77,8 +77,7 @@ void take_task(ChunkStatus& chunk, const TaskState& task, bool cancelled) {
     return;
   }
   if (task.state == "COMPLETED") {
-    // A try that failed behind one that was done is none of Slurm's.
-    if (chunk.state != State::failed || !chunk.was_done) chunk.state = State::ending;
+    if (!chunk.was_done) chunk.state = State::ending;  // a try behind one that was done is none of Slurm's
   } else if (cancelled || task.state == "CANCELLED") {
     chunk.state = State::cancelled;
   } else if (task.state == "FAILED") {

@@ -84,9 +84,8 @@ void fail_unknown(lua_State* lua, TableReader& table, const EffectSchema& schema
     const Value value = read_value(lua, -1);
     lua_pop(lua, 1);
     const bool digits = value.kind == Value::Kind::number && value.number == std::floor(value.number) &&
-                        table.keys().back().position == 0;
-    const std::string point =
-        digits ? fmt::format(": {}; numbers have a point: 0.{}", value.shown(), value.shown()) : "";
+                        value.number >= 0 && table.keys().back().position == 0;
+    const std::string point = digits ? fmt::format(": {}; numbers have a point, as 0.5 has", value.shown()) : "";
     table.fail(failure(
         fmt::format("{} '{}' has a value without a name at position {}{}", what, schema.name, key.position, point),
         {key.name}, join(names)));

@@ -199,7 +199,10 @@ ScriptError not_returned(lua_State* lua, const fs::path& file, const char* what,
   if (!made || source == sources.end()) return error;
   const std::size_t at = source->text.rfind("fx." + function);
   if (at == std::string::npos) return error;
-  error.error.line = static_cast<int>(std::ranges::count(std::string_view(source->text).substr(0, at), '\n')) + 1;
+  const int line = static_cast<int>(std::ranges::count(std::string_view(source->text).substr(0, at), '\n')) + 1;
+  if (!trim(line_of(source->text, line)).starts_with("fx." + function))
+    return error;  // not what a statement begins with
+  error.error.line = line;
   error.error.message = fmt::format("'return' is missing before fx.{}: {} must return what it makes", function, what);
   error.error.allowed.clear();
   return error;

@@ -68,8 +68,8 @@
 
 ---Text over the picture: the number of the frame, a time code, a name.
 ---@class afterglow.settings.burn_in : afterglow.EntryKeys
----@field text? string|afterglow.OfTime  Up to 256 letters, with "\n" between lines. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic; "": none. default "{frame}"
----@field start? string|afterglow.OfTime  {timecode} at time 0. "01:00:00;00" drops numbers, at 29.97 and 59.94 frames a second. default "00:00:00:00"
+---@field text? string|afterglow.OfTime  With "\n" between lines; lines times the letters of the longest are 256 at most. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic; "": none. default "{frame}"
+---@field start? string|afterglow.OfTime  {timecode} at time 0: of frame 0 of pictures, of the first frame of videos. "01:00:00;00" drops numbers, at 29.97 and 59.94 frames a second. default "00:00:00:00"
 ---@field position? number[]|afterglow.Moving  Where the text is: {0, 0} in the upper left corner, {1, 1} in the lower right. Its lines are flush accordingly. {x, y}, each 0…1, default {0.5, 1}
 ---@field size? number|afterglow.Moving  Height of a line, as a share of the picture's height. Less where the text would not fit. 0.005…1, default 0.05
 ---@field margin? number|afterglow.Moving  From the picture's border, as a share of its height. 0…0.5, default 0.03

@@ -1,30 +1,45 @@
 -- SPDX-License-Identifier: MIT
 -- Burn-in: text over the picture, in a box: the number of a frame, a time code, the name of a shot. The box with its letters is a small image
--- of its own, made again when the text changes. Formulas: docs/math.md §55.
+-- of its own, made again when the text changes. Over transparent parts its letters are light alone, which EXR and videos show and PNG, TIFF and WebP
+-- do not: put such pictures over a background first. Formulas: docs/math.md §55.
 local fx = require "afterglow"
 local letters = require "lib.letters"
 local time_code = require "lib.time_code"
 
 local kMost = 256  -- letters
 
--- The words in braces, filled in.
+local function is_word(text)
+  for i = 1, #text do
+    local byte = text:byte(i) | 0x20
+    if byte < 97 or byte > 122 then return false end
+  end
+  return text ~= ""
+end
+
+-- The words in braces, filled in. Braces around anything but letters stay.
 local function filled(g, text, start)
-  local rate = math.max(math.floor(g.fps + 0.5), 1)
-  local first, drops = time_code.parse(start, rate)
-  if not first then error(('start: "%s" is no time code at %d frames a second, as "01:00:00:00" is'):format(start, rate), 0) end
+  local first, drops = time_code.parse(start, g.fps)
+  if not first then
+    error(('start: "%s" is no time code at %.6g frames a second, as "01:00:00:00" is; ";" is for 29.97 and 59.94'):format(start, g.fps), 0)
+  end
   local words = {
-    frame = function() return ("%04d"):format(math.floor(g.frame)) end,
+    frame = function() return ("%04.0f"):format(math.floor(g.frame)) end,
     time = function() return ("%.3f"):format(g.time) end,
-    timecode = function() return time_code.text(first + math.floor(g.time * g.fps + 0.5), rate, drops) end,
+    timecode = function() return time_code.text(first + math.floor(g.time * g.fps + 0.5), g.fps, drops) end,
   }
   local out, from = "", 1
   while true do
     local open = text:find("{", from, true)
     local close = open and text:find("}", open, true)
     if not close then return out .. text:sub(from) end
-    local word = words[text:sub(open + 1, close - 1)]
-    if not word then error(("text: %s is none of {frame}, {time}, {timecode}"):format(text:sub(open, close)), 0) end
-    out, from = out .. text:sub(from, open - 1) .. word(), close + 1
+    local name = text:sub(open + 1, close - 1)
+    if not is_word(name) then
+      out, from = out .. text:sub(from, open), open + 1
+    elseif words[name] then
+      out, from = out .. text:sub(from, open - 1) .. words[name](), close + 1
+    else
+      error(("text: {%s} is none of {frame}, {time}, {timecode}"):format(name), 0)
+    end
   end
 end
 
@@ -40,13 +55,16 @@ local function packed(lines, columns, align)
   return vectors
 end
 
+-- The label's sides, in steps: text that grows with the frames does not want other images with each.
+local function steps(length) return math.ceil(length / 32) * 32 end
+
 return fx.effect {
   name = "burn_in",
   doc = "Text over the picture: the number of the frame, a time code, a name.",
   at = "after_post_process", order = 220, space = "display",
   settings = {
-    text = fx.text { default = "{frame}", doc = "Up to 256 letters, with \"\\n\" between lines. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic; \"\": none." },
-    start = fx.text { default = "00:00:00:00", doc = "{timecode} at time 0. \"01:00:00;00\" drops numbers, at 29.97 and 59.94 frames a second." },
+    text = fx.text { default = "{frame}", doc = "With \"\\n\" between lines; lines times the letters of the longest are 256 at most. {frame}, {time} and {timecode} are filled in: 0042, 1.750 (seconds), 00:00:01:18. Latin, Greek and Cyrillic; \"\": none." },
+    start = fx.text { default = "00:00:00:00", doc = "{timecode} at time 0: of frame 0 of pictures, of the first frame of videos. \"01:00:00;00\" drops numbers, at 29.97 and 59.94 frames a second." },
     position = fx.vec2 { min = 0, max = 1, default = { 0.5, 1 }, doc = "Where the text is: {0, 0} in the upper left corner, {1, 1} in the lower right. Its lines are flush accordingly." },
     size = fx.float { min = 0.005, max = 1, default = 0.05, doc = "Height of a line, as a share of the picture's height. Less where the text would not fit." },
     margin = fx.float { min = 0, max = 0.5, default = 0.03, doc = "From the picture's border, as a share of its height." },
@@ -81,7 +99,7 @@ return fx.effect {
     local origin = { corner[1] - whole[1], corner[2] - whole[2] }
     local label = g:pass {
       shader = "burn_in/letters", name = "letters", font = g:image { file = letters.picture, raw = true },
-      size = { math.ceil(origin[1] + box[1]), math.ceil(origin[2] + box[2]) },
+      size = { steps(origin[1] + box[1]), steps(origin[2] + box[2]) },
       letters = packed(lines, columns, s.position[1]), cells = { columns, #lines }, origin = origin, box = box, line = line,
       reads = math.min(math.max(math.ceil(48 / line), 1), 4),  -- small letters: as many as the font has texels
       ink = s.color, ground = s.background, opacity = s.box, outline = s.outline,

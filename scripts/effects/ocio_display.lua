@@ -7,12 +7,13 @@
 -- the sRGB curve, which the output encodes them with again (`view = true`): integers in files and videos are exactly the view's codes, whatever
 -- display it is for, and are not said to be sRGB.
 local fx = require "afterglow"
+local working_space = require "lib.working_space"
 
 return fx.effect {
   name = "ocio_display",
   doc = "The view of an OpenColorIO configuration, in place of a tone curve.",
   at = "post_process", order = 200, alpha = "straight",
-  space = function(s) return { needs = s.from == "" and "scene" or "other", makes = "display", view = true } end,
+  space = function(s) return { needs = working_space[s.from] and "scene" or "other", makes = "display", view = true } end,
   settings = {
     config = fx.file { extensions = { "ocio" }, doc = "The configuration: beside the preset or on the search path. None: the one that $OCIO names." },
     display = fx.text { doc = "Display. None: the configuration's default." },

@@ -3,13 +3,14 @@
 -- 1e-4 as its CPU processor. A space that is not given is linear Rec.709, the space that looks work in (how a configuration is asked for it: see
 -- ocio_display). Values go out as the space has them: whoever goes to a logarithm has to come back before the tone curve.
 local fx = require "afterglow"
+local working_space = require "lib.working_space"
 
 return fx.effect {
   name = "ocio_transform",
   doc = "Colours from one space of an OpenColorIO configuration to another, with looks.",
   at = "post_process", order = 150, alpha = "straight",
   space = function(s)
-    local needs, makes = s.from == "" and "scene" or "other", s.to == "" and "scene" or "other"
+    local needs, makes = working_space[s.from] and "scene" or "other", working_space[s.to] and "scene" or "other"
     if s.inverse then needs, makes = makes, needs end
     return { needs = needs, makes = makes }
   end,

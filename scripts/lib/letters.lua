@@ -41,7 +41,9 @@ local function codes_of(text)
       end
       code = code << 6 | byte & 0x3F
     end
-    codes[#codes + 1] = code or kSquare
+    code = code or kSquare
+    -- Marks of decomposed letters go, and the first half of "\r\n".
+    if code ~= 0x0D and (code < 0x300 or code > 0x36F) then codes[#codes + 1] = code end
     at = last + 1
   end
   return codes

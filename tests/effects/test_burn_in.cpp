@@ -65,6 +65,8 @@ TEST_F(Effects, BurnInFillsInTheFrame) {
   EXPECT_TRUE(same("{timecode}", "00:00:01:18", scene, 43)) << "frame 1 is at time 0 here";
   EXPECT_TRUE(same("{time}", "1.750", scene, 43));
   EXPECT_TRUE(same("{", "{", scene, 42));
+  EXPECT_TRUE(same("{{frame}} {3} {}", "{0042} {3} {}", scene, 42));
+  EXPECT_TRUE(same("a\\r\\nbe\\xCC\\x81", "a\\nbe", scene, 42));
   EXPECT_FALSE(same("{frame}", "0043", scene, 42));
   // Bytes that are no letters, and letters that are cut off or lie beyond the picture, are squares.
   EXPECT_TRUE(same("a\\xB1\\xCAb\\xE2\\x82c\\xF0\\x9F\\x98\\x80\\xC1\\xC3", "a□□b□c□□□", scene, 42));
@@ -75,22 +77,24 @@ TEST_F(Effects, BurnInFillsInTheFrame) {
 TEST_F(Effects, TimeCodesDropTheRightNumbers) {
   const std::string count = R"((function()
     local time_code = require "lib.time_code"
-    for rate, drop in pairs { [24] = 0, [30] = 2, [60] = 4 } do
+    for fps, drop in pairs { [24] = 0, [30] = 0, [30000 / 1001] = 2, [59.94] = 4 } do
+      local rate = math.floor(fps + 0.5)
       local h, m, s, f, mark = 0, 0, 0, 0, drop > 0 and ";" or ":"
       for n = 0, rate * 660 do
         local code = ("%02d:%02d:%02d%s%02d"):format(h, m, s, mark, f)
-        assert(time_code.text(n, rate, drop > 0) == code, code)
-        local back, drops = time_code.parse(code, rate)
+        assert(time_code.text(n, fps, drop > 0) == code, code)
+        local back, drops = time_code.parse(code, fps)
         assert(back == n and drops == (drop > 0), code)
         f = f + 1
         if f == rate then f, s = 0, s + 1 end
         if s == 60 then s, m, f = 0, m + 1, (m + 1) % 10 == 0 and 0 or drop end
       end
     end
-    assert(time_code.text(-1, 25, false) == "23:59:59:24" and time_code.text(-1, 30, true) == "23:59:59;29")
-    assert(time_code.text(107892, 30, true) == "01:00:00;00" and time_code.parse("01:00:00;00", 30) == 107892)
-    assert(time_code.text(3, 25, true) == "00:00:00:03")  -- nothing is dropped at this rate
-    for _, bad in ipairs { "", "1:00:00:00", "01:00:00:24", "01:60:00:00", "01:00:61:00", "01-00:00:00", "aa:00:00:00", "01:00:00:000" } do
+    assert(time_code.text(-1, 25, false) == "23:59:59:24" and time_code.text(-1, 29.97, true) == "23:59:59;29")
+    assert(time_code.text(107892, 29.97, true) == "01:00:00;00" and time_code.parse("01:00:00;00", 29.97) == 107892)
+    for _, fps in ipairs { 23.976, 25, 30, 60 } do assert(not time_code.parse("01:00:00;00", fps)) end
+    assert(not time_code.parse("00:01:00;00", 29.97) and time_code.parse("00:10:00;00", 29.97))
+    for _, bad in ipairs { "", "1:00:00:00", "01:00:00:24", "24:00:00:00", "01:60:00:00", "01:00:61:00", "01-00:00:00", "aa:00:00:00", "01:00:00:000" } do
       assert(not time_code.parse(bad, 24), bad)
     end
     return fx.exposure { ev = 1 }

@@ -367,20 +367,27 @@ TEST_F(ReloadTest, FilesThatAreNotThereLeaveTheLastGoodLook) {
 
 /// A frame that failed is nothing that later calls are held to.
 TEST_F(ReloadTest, AFrameThatFailsIsNoReasonToRefuse) {
-  look("fx.gain { amount = function(t) if t.frame > 5 then error('no such frame') end return 2 end }");
-  const StackPtr stack = this->stack();
-  std::vector<float> source(4, 0.5f), result(4);
-  afterglow_run_info info = afterglow_run_info_default();
-  afterglow_frame frame = afterglow_frame_default();
-  frame.number = 9;
-  info.frame = &frame;
-  info.source = image(source, 1, 1);
-  info.result = image(result, 1, 1);
-  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
-  EXPECT_TRUE(ErrorPtr(afterglow_stack_run(stack.get(), &info)));
-  ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
-  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
-  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+  for (const bool follow : {false, true}) {
+    SCOPED_TRACE(follow);
+    look("fx.gain { amount = function(t) if t.frame > 5 then error('no such frame') end return 2 end }");
+    afterglow_stack_options options = afterglow_stack_options_default();
+    options.follow = follow;
+    const StackPtr stack = this->stack(options);
+    std::vector<float> source(4, 0.5f), result(4);
+    afterglow_run_info info = afterglow_run_info_default();
+    afterglow_frame frame = afterglow_frame_default();
+    frame.number = 9;
+    info.frame = &frame;
+    info.source = image(source, 1, 1);
+    info.result = image(result, 1, 1);
+    EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_run(stack.get(), &info)));
+    ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+    EXPECT_TRUE(ErrorPtr(afterglow_stack_run(stack.get(), &info)));
+    ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+    EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+  }
 }
 
 TEST_F(ReloadTest, AShaderThatIsBrokenIsToldByReload) {

@@ -74,7 +74,7 @@ TEST_F(Hints, AColonForASignOfEquality) {
 
 TEST_F(Hints, ACommaInANumber) {
   EXPECT_THAT(error("fx.glow { gain = 0,2 }"),
-              HasSubstr("effect 'glow' has a value without a name at position 1: 2; numbers have a point: 0.2"));
+              HasSubstr("effect 'glow' has a value without a name at position 1: 2; numbers have a point, as 0.5 has"));
   EXPECT_THAT(error("fx.glow { gain = 1, \"soft\" }"), Not(HasSubstr("point")));
 }
 
