@@ -59,6 +59,23 @@ TEST_F(OcioFiles, LieBesideThePresetOrWhereTheEnvironmentSays) {
   EXPECT_EQ(error("view = \"Dark\", display = \"Projector\", looks = \"+warm, -warm\""), "");
 }
 
+/// A tone curve behind the working space is where it should be, whatever the space is called.
+TEST_F(OcioFiles, TheWorkingSpaceByItsNameIsNoOther) {
+  const auto warnings = [&](const std::string& from, const std::string& to) {
+    scene.stack("fx.ocio_transform { config = \"studio.ocio\", from = \"" + from + "\", to = \"" + to +
+                "\" }, fx.tone_mapping {}");
+    auto preset = scene.load();
+    if (!preset) return preset.error().text();
+    std::string out;
+    const auto spaces = preset->spaces();
+    for (const auto& space : *spaces) out += space.warning;
+    return out;
+  };
+  EXPECT_EQ(warnings("film", ""), "");
+  EXPECT_EQ(warnings("film", "lin_rec709"), "");
+  EXPECT_THAT(warnings("lin_rec709", "film"), HasSubstr("'ocio_transform' before it makes values of another space"));
+}
+
 TEST_F(OcioFiles, NoneAtAll) {
   EXPECT_EQ(
       error("view = \"Raw\""),
