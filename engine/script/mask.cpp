@@ -172,9 +172,6 @@ void read_mask(lua_State* lua, TableReader& table, DeclaredEntry& declared) {
     if (declared.mask < 0)
       table.fail(failure(fmt::format("{}: mask = {} is not a mask", table.what(), read_value(lua, -1).shown()),
                          {"mask"}, "fx.mask.NAME { … }, a number, such combined by + - *"));
-    else if (const Value number = read_value(lua, -1);
-             number.kind == Value::Kind::number && (number.number < 0 || number.number > 1))
-      table.fail(failure(fmt::format("{}: mask = {} is out of range", table.what(), number.shown()), {"mask"}, "0…1"));
   }
   lua_pop(lua, 1);
 }

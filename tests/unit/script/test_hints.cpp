@@ -106,13 +106,6 @@ TEST_F(Hints, EffectsThatAreNotFound) {
   EXPECT_THAT(error("fx.glow { mask = fx.mask.odd {} }"), HasSubstr("masks/odd.lua beside the preset"));
 }
 
-TEST_F(Hints, NumbersInPlaceOfMasksHaveARange) {
-  EXPECT_THAT(error("fx.glow { mask = 2 }"),
-              HasSubstr("preset.lua:3: error: fx.glow: mask = 2 is out of range; allowed: 0…1"));
-  EXPECT_THAT(error("fx.glow { mask = -0.5 }"), HasSubstr("allowed: 0…1"));
-  EXPECT_EQ(error("fx.glow { mask = 1 }, fx.glow { mask = 0.25 }"), "");
-}
-
 /// Beyond 2^31 a square could run over.
 TEST_F(Hints, WholeFramesAreIntegers) {
   scene.effect("told", R"(settings = { word = fx.text {} },
