@@ -4,6 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "core/paths.h"
+#include "image/reader.h"
+
 namespace afterglow::reference {
 namespace {
 
@@ -22,6 +25,17 @@ int place_of(char32_t letter) {
     place += static_cast<int>(last - first) + 1;
   }
   return place_of(0x25A1);
+}
+
+/// Nothing where it cannot be read.
+const DoubleImage& font() {
+  static const DoubleImage image = [] {
+    Diagnostics quiet;
+    const auto picture = read_picture(find_installation() / "assets/fonts/mono.exr", {}, quiet);
+    return picture ? from_floats(picture->color.pixels.data(), picture->color.size(), picture->color.channels)
+                   : DoubleImage(1, 1);
+  }();
+  return image;
 }
 
 std::vector<std::u32string> lines_of(const std::u32string& text) {
@@ -106,8 +120,8 @@ class Label {
 
 }  // namespace
 
-DoubleImage burn_in(const DoubleImage& source, const DoubleImage& font, const BurnIn& s) {
-  const Label label(source.size(), font, s);
+DoubleImage burn_in(const DoubleImage& source, const BurnIn& s) {
+  const Label label(source.size(), font(), s);
   return generate(source.size(), [&](int x, int y) {
     const Rgba over = label.at(x, y);
     const Rgba& p = source.at(x, y);

@@ -14,7 +14,7 @@ struct BurnIn {
   Rgb color{1}, background{0};
   double box = 0.7, outline = 0;
 };
-/// `font`: assets/fonts/mono.exr.
-DoubleImage burn_in(const DoubleImage& source, const DoubleImage& font, const BurnIn& settings);
+/// With the letters of the installation, assets/fonts/mono.exr.
+DoubleImage burn_in(const DoubleImage& source, const BurnIn& settings);
 
 }  // namespace afterglow::reference

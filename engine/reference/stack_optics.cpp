@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/paths.h"
-#include "image/reader.h"
 #include "reference/air.h"
 #include "reference/burn_in.h"
 #include "reference/cut.h"
@@ -158,17 +156,6 @@ DoubleImage run_posterize(const DoubleImage& source, const Inputs&, const Settin
   return posterize(source, {s.integer("levels"), s.number("softness"), s.number("intensity")});
 }
 
-/// The letters that come with the program; none where they cannot be read.
-const DoubleImage& font() {
-  static const DoubleImage image = [] {
-    Diagnostics quiet;
-    const auto picture = read_picture(find_installation() / "assets/fonts/mono.exr", {}, quiet);
-    return picture ? from_floats(picture->color.pixels.data(), picture->color.size(), picture->color.channels)
-                   : DoubleImage(1, 1);
-  }();
-  return image;
-}
-
 /// Of ASCII texts, with {frame} alone filled in.
 DoubleImage run_burn_in(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
   std::string text = s.text("text");
@@ -176,16 +163,15 @@ DoubleImage run_burn_in(const DoubleImage& source, const Inputs& inputs, const S
   for (auto at = text.find(kFrame); at != std::string::npos; at = text.find(kFrame, at))
     text.replace(at, kFrame.size(), fmt::format("{:04}", static_cast<long long>(std::floor(inputs.frame))));
   const auto [x, y] = s.pair("position");
-  return burn_in(source, font(),
-                 {.text = std::u32string(text.begin(), text.end()),
-                  .x = x,
-                  .y = y,
-                  .size = s.number("size"),
-                  .margin = s.number("margin"),
-                  .color = s.color("color"),
-                  .background = s.color("background"),
-                  .box = s.number("box"),
-                  .outline = s.number("outline")});
+  return burn_in(source, {.text = std::u32string(text.begin(), text.end()),
+                          .x = x,
+                          .y = y,
+                          .size = s.number("size"),
+                          .margin = s.number("margin"),
+                          .color = s.color("color"),
+                          .background = s.color("background"),
+                          .box = s.number("box"),
+                          .outline = s.number("outline")});
 }
 
 constexpr Oracle kOpticOracles[] = {

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include "cases.h"
-#include "image/reader.h"
 #include "reference/burn_in.h"
 
 namespace afterglow {
@@ -13,16 +12,6 @@ namespace {
 using namespace reference;
 using ::testing::HasSubstr;
 
-const DoubleImage& font() {
-  static const DoubleImage image = [] {
-    Diagnostics quiet;
-    const auto picture = read_picture(AFTERGLOW_TEST_FOLDER "/../assets/fonts/mono.exr", {}, quiet);
-    return picture ? from_floats(picture->color.pixels.data(), picture->color.size(), picture->color.channels)
-                   : DoubleImage(1, 1);
-  }();
-  return image;
-}
-
 std::string color_text(const Rgb& c) { return fmt::format("{{ {}, {}, {} }}", c.r, c.g, c.b); }
 
 EffectCase burnt(const std::string& text, const BurnIn& v) {
@@ -30,7 +19,7 @@ EffectCase burnt(const std::string& text, const BurnIn& v) {
       fmt::format("fx.burn_in {{ text = \"{}\", position = {{ {}, {} }}, size = {}, margin = {}, color = {}, "
                   "background = {}, box = {}, outline = {} }}",
                   text, v.x, v.y, v.size, v.margin, color_text(v.color), color_text(v.background), v.box, v.outline),
-      [=](const Scene& s) { return burn_in(s.source, font(), v); }};
+      [=](const Scene& s) { return burn_in(s.source, v); }};
 }
 
 TEST_F(Effects, BurnInAgrees) {

@@ -39,6 +39,16 @@ class ReloadTest : public ApiTest {
     EXPECT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
     return result[0];
   }
+  static ErrorPtr run_frame(const StackPtr& stack, double number) {
+    std::vector<float> source(4, 0.5f), result(4);
+    afterglow_run_info info = afterglow_run_info_default();
+    afterglow_frame frame = afterglow_frame_default();
+    frame.number = number;
+    info.frame = &frame;
+    info.source = image(source, 1, 1);
+    info.result = image(result, 1, 1);
+    return ErrorPtr(afterglow_stack_run(stack.get(), &info));
+  }
   /// Updates until something was taken or an error came.
   static ErrorPtr update(const StackPtr& stack, Waker& waker) {
     for (;;) {
@@ -342,11 +352,7 @@ TEST_F(ReloadTest, FilesThatAreNotThereLeaveTheLastGoodLook) {
     const float dark = first_sample(stack);
     // Settings that belong together are set one after the other: what only a frame can tell is told by it.
     ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("lut.file"), str("none.cube"))));
-    std::vector<float> source(4, 0.5f), result(4);
-    afterglow_run_info info = afterglow_run_info_default();
-    info.source = image(source, 1, 1);
-    info.result = image(result, 1, 1);
-    const ErrorPtr told = follow ? update(stack, waker) : ErrorPtr(afterglow_stack_run(stack.get(), &info));
+    const ErrorPtr told = follow ? update(stack, waker) : run_frame(stack, 1);
     EXPECT_THAT(text_of(told.get()), HasSubstr("none.cube"));
     if (follow) {
       EXPECT_EQ(first_sample(stack), dark);
@@ -373,18 +379,11 @@ TEST_F(ReloadTest, AFrameThatFailsIsNoReasonToRefuse) {
     afterglow_stack_options options = afterglow_stack_options_default();
     options.follow = follow;
     const StackPtr stack = this->stack(options);
-    std::vector<float> source(4, 0.5f), result(4);
-    afterglow_run_info info = afterglow_run_info_default();
-    afterglow_frame frame = afterglow_frame_default();
-    frame.number = 9;
-    info.frame = &frame;
-    info.source = image(source, 1, 1);
-    info.result = image(result, 1, 1);
     EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
-    EXPECT_TRUE(ErrorPtr(afterglow_stack_run(stack.get(), &info)));
+    EXPECT_TRUE(run_frame(stack, 9));
     ASSERT_TRUE(fine(afterglow_stack_set_text(stack.get(), str("gain.way"), str("twice"))));
     EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
-    EXPECT_TRUE(ErrorPtr(afterglow_stack_run(stack.get(), &info)));
+    EXPECT_TRUE(run_frame(stack, 9));
     ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
     EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
   }
@@ -412,14 +411,7 @@ TEST_F(ReloadTest, ValuesAreThoseOfTheLastFrame) {
     afterglow_stack_options options = afterglow_stack_options_default();
     options.follow = follow;
     const StackPtr stack = this->stack(options);
-    std::vector<float> source(4, 0.5f), result(4);
-    afterglow_run_info info = afterglow_run_info_default();
-    afterglow_frame frame = afterglow_frame_default();
-    frame.number = 9;
-    info.frame = &frame;
-    info.source = image(source, 1, 1);
-    info.result = image(result, 1, 1);
-    ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+    ASSERT_FALSE(run_frame(stack, 9));
     const auto amount = [&] {
       double value = 0;
       EXPECT_TRUE(fine(afterglow_stack_get_number(stack.get(), str("gain.amount"), &value)));
