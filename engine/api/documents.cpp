@@ -86,7 +86,7 @@ std::string settings_document(Backend& backend) {
   return dumped(out);
 }
 
-std::string arguments_document(Backend& backend) {
+std::string arguments_document(const Backend& backend) {
   Json out = Json::array();
   for (const auto& argument : backend.preset().arguments()) {
     Json item = setting_json(argument.schema);

@@ -13,7 +13,7 @@ namespace afterglow::api {
 std::optional<SettingValue> entry_value(const StackEntry& entry, const std::string& name);
 
 std::string device_document(const Device& device);
-std::string arguments_document(Backend& backend);
+std::string arguments_document(const Backend& backend);
 std::string settings_document(Backend& backend);
 std::string explain_document(Backend& backend);
 std::string report_document(const BackendReport& report, std::uint64_t mended);
