@@ -331,7 +331,7 @@ TEST_F(ReloadTest, WhatIsSetWhileATableIsBrokenIsKept) {
   ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), str("gain.amount"))));
   EXPECT_EQ(first_sample(stack), dark) << "the last good one";
   write("dark.cube", kDark + "\n");
-  while (!update(stack, waker) && first_sample(stack) == dark) continue;
+  while (first_sample(stack) == dark && !HasFatalFailure()) (void)update(stack, waker);  // half written it is an error
   EXPECT_FLOAT_EQ(first_sample(stack), (1.0f + dark) / 2);
   ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str(nullptr))));
   EXPECT_EQ(first_sample(stack), dark);
