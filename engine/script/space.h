@@ -10,8 +10,8 @@
 
 namespace afterglow::script {
 
-/// Reads `space` of fx.effect: "scene", "display", "other", { needs = …, makes = … }, or a function of the settings that returns
-/// one of these. Mistakes are noted in `table`.
+/// Reads `space` of fx.effect: "scene", "display", "other", { needs = …, makes = … }, or a function of the settings that
+/// returns one of these. Mistakes are noted in `table`.
 void read_space(lua_State* lua, TableReader& table, Effect& effect);
 
 /// Follows the light through the stack, which begins scene-linear. An entry is warned about when it is made for scene

@@ -44,39 +44,32 @@ std::string_view character_of(std::string_view line, std::size_t at) {
   return line.substr(at, end - at);
 }
 
+/// Where something begins in a line, outside of its texts; npos: nowhere. Long texts and comments are not known.
+std::size_t find_in_code(std::string_view line, std::string_view what) {
+  char quote = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quote != 0) {
+      if (line[i] == '\\') ++i;
+      if (i < line.size() && line[i] == quote) quote = 0;
+    } else if (line[i] == '"' || line[i] == '\'') {
+      quote = line[i];
+    } else if (line.substr(i).starts_with(what)) {
+      return i;
+    }
+  }
+  return std::string_view::npos;
+}
+
 /// The first character of a line, outside of its texts, that begins with this byte; else within them: long texts and
 /// comments may begin on lines above.
 std::string_view character_at(std::string_view line, char first) {
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quote != 0) {
-      if (line[i] == '\\') ++i;
-      if (i < line.size() && line[i] == quote) quote = 0;
-    } else if (line[i] == '"' || line[i] == '\'') {
-      quote = line[i];
-    } else if (line[i] == first) {
-      return character_of(line, i);
-    }
-  }
-  const std::size_t within = line.find(first);
-  return within == std::string_view::npos ? std::string_view() : character_of(line, within);
+  std::size_t at = find_in_code(line, {&first, 1});
+  if (at == std::string_view::npos) at = line.find(first);
+  return at == std::string_view::npos ? std::string_view() : character_of(line, at);
 }
 
-/// The line without a comment at its end and without blanks around it. Long texts and comments are not known.
-std::string code_of(std::string_view line) {
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quote != 0) {
-      if (line[i] == '\\') ++i;
-      if (i < line.size() && line[i] == quote) quote = 0;
-    } else if (line[i] == '"' || line[i] == '\'') {
-      quote = line[i];
-    } else if (line.substr(i).starts_with("--")) {
-      return trim(line.substr(0, i));
-    }
-  }
-  return trim(line);
-}
+/// The line without a comment at its end and without blanks around it.
+std::string code_of(std::string_view line) { return trim(line.substr(0, find_in_code(line, "--"))); }
 
 /// Can another value follow this without a comma: does it end as a value does?
 bool ends_a_value(std::string_view code) {

@@ -31,15 +31,8 @@ struct Waker {
 
 class ReloadTest : public ApiTest {
  protected:
-  static float first_sample(const StackPtr& stack) {
-    std::vector<float> source(4, 0.5f), result(4);
-    afterglow_run_info info = afterglow_run_info_default();
-    info.source = image(source, 1, 1);
-    info.result = image(result, 1, 1);
-    EXPECT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
-    return result[0];
-  }
-  static ErrorPtr run_frame(const StackPtr& stack, double number) {
+  /// Runs a frame of one pixel, 0.5. `first`: the first sample of what came of it.
+  static ErrorPtr run_frame(const StackPtr& stack, double number, float* first = nullptr) {
     std::vector<float> source(4, 0.5f), result(4);
     afterglow_run_info info = afterglow_run_info_default();
     afterglow_frame frame = afterglow_frame_default();
@@ -47,7 +40,14 @@ class ReloadTest : public ApiTest {
     info.frame = &frame;
     info.source = image(source, 1, 1);
     info.result = image(result, 1, 1);
-    return ErrorPtr(afterglow_stack_run(stack.get(), &info));
+    ErrorPtr error(afterglow_stack_run(stack.get(), &info));
+    if (first) *first = result[0];
+    return error;
+  }
+  static float first_sample(const StackPtr& stack) {
+    float sample = 0;
+    EXPECT_TRUE(fine(run_frame(stack, afterglow_frame_default().number, &sample).release()));
+    return sample;
   }
   /// Updates until something was taken or an error came.
   static ErrorPtr update(const StackPtr& stack, Waker& waker) {
