@@ -6,20 +6,9 @@
 #include <utility>
 
 #include "core/exception.h"
-#include "core/parse_number.h"
 #include "image/sequence.h"
 
 namespace afterglow {
-namespace {
-
-std::optional<int> number_of(const std::filesystem::path& file) {
-  const FrameNumber place = frame_number(file);
-  if (place.digits == 0 || place.digits > kMostFrameDigits) return std::nullopt;
-  return parse_number<int>(file.filename().string().substr(place.begin, place.end - place.begin));
-}
-
-}  // namespace
-
 MissingFrames::~MissingFrames() {
   try {
     tell_kept();
@@ -28,7 +17,7 @@ MissingFrames::~MissingFrames() {
 }
 
 bool MissingFrames::continues(const Error& error) const {
-  const auto number = number_of(error.file);
+  const auto number = own_frame_number(error.file);
   if (!first_ || !number || without_frame_number(error.file) != without_frame_number(first_->file)) return false;
   const int step = *number - number_;
   return step > 0 && (count_ == 1 || step == step_);
@@ -40,9 +29,9 @@ void MissingFrames::next() {
 
 void MissingFrames::add(const Error& error) {
   added_ = true;
-  const bool absent = error.message == "no such file" && error.trail.empty() && number_of(error.file);
+  const bool absent = error.message == "no such file" && error.trail.empty() && own_frame_number(error.file);
   if (absent && continues(error)) {
-    const int number = *number_of(error.file);
+    const int number = *own_frame_number(error.file);
     step_ = number - number_;
     number_ = number;
     last_ = error.file;
@@ -52,7 +41,7 @@ void MissingFrames::add(const Error& error) {
   tell_kept();
   if (!absent) return tell_(error);
   first_ = error;
-  number_ = *number_of(error.file);
+  number_ = *own_frame_number(error.file);
   count_ = 1;
 }
 

@@ -59,13 +59,6 @@ Result<Range> parse_range(const std::string& text, std::string_view part) {
   return range;
 }
 
-/// A file's own number; 1 without one.
-int own_number(const fs::path& file) {
-  const FrameNumber number = frame_number(file);
-  if (number.digits == 0 || number.digits > kMostFrameDigits) return 1;
-  return std::stoi(file.stem().string().substr(number.begin, number.end - number.begin));
-}
-
 /// Digits, and a sign in front of them.
 bool is_number(std::string_view text) {
   if (text.starts_with('-')) text.remove_prefix(1);
@@ -135,6 +128,12 @@ FrameNumber frame_number(const fs::path& file) {
   const std::size_t begin = number_begin(stem, end);
   const std::size_t sign = begin < end && stem[begin] == '-' ? 1 : 0;
   return {begin, end, static_cast<int>(end - begin - sign)};
+}
+
+std::optional<int> own_frame_number(const fs::path& file) {
+  const FrameNumber number = frame_number(file);
+  if (number.digits == 0 || number.digits > kMostFrameDigits) return std::nullopt;
+  return std::stoi(file.stem().string().substr(number.begin, number.end - number.begin));
 }
 
 std::string without_frame_number(const fs::path& file) {
@@ -253,7 +252,7 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
                                            LeftOut* left_out) {
   if (!pattern.numbered) {
     const fs::path file = pattern.file(0);
-    return std::vector<FrameFile>{{own_number(file), file}};
+    return std::vector<FrameFile>{{own_frame_number(file).value_or(1), file}};
   }
   std::vector<FrameFile> found;
   if (frames) {

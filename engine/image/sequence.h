@@ -44,6 +44,8 @@ struct FrameNumber {
 };
 inline constexpr int kMostFrameDigits = 9;  // what always fits an int
 FrameNumber frame_number(const std::filesystem::path& file);
+/// The number that lies there; none where it is no frame's.
+std::optional<int> own_frame_number(const std::filesystem::path& file);
 /// A file's path with "*" in place of its frame's number: the same for all frames of a sequence.
 std::string without_frame_number(const std::filesystem::path& file);
 
