@@ -2,6 +2,8 @@
 #include "reference/burn_in.h"
 
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
 #include <optional>
 
 #include "core/paths.h"
