@@ -113,8 +113,8 @@ local fx = {}
 ---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
 ---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
 ---`reference_height` makes lengths resolution-free: settings in px are pixels of a picture of that height, whatever is run.
----`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "logc4", "slog3", "cineon", "pq", "hlg",
----"rec709", "gamma22", "gamma24", "linear", "srgb"; `--input-space` goes before it.
+---`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "vlog", "pq", … (docs/math.md §24 has
+---all); `--input-space` goes before it.
 ---`gamut` says what becomes of components below 0, which colours outside of Rec.709 have: "cut" (they end at 0) or "keep"; `--gamut` goes before it.
 ---`alpha` says how effects that bend colour see soft edges: "straight", without their coverage, or "associated", as they are, for layers that glow.
 ---`requires = "0.2"` names the oldest Afterglow that runs the preset; older ones refuse it by that line.

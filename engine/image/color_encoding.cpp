@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "core/parallel.h"
+#include "image/hlg_rendering.h"
 #include "image/plain_values.h"
 #include "image/srgb.h"
 
@@ -220,6 +221,7 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
   }
   for (std::size_t i = 0; i < pixels; ++i) {
     float* pixel = rgba + i * 4;
+    if (encoding.hlg_display) hlg_to_display(pixel);
     if (encoding.matrix) multiply(*encoding.matrix, pixel, pixel);
     if (encoding.gain != 1)
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(pixel[c] * encoding.gain);

@@ -32,6 +32,7 @@ struct ColorEncoding {
   double exponent = 1;                         ///< of `power`
   double (*formula)(double) = nullptr;         ///< of `formula`: stored value to light
   std::array<std::vector<float>, 3> tables{};  ///< of `tables`: linear values for equally spaced stored values 0…1
+  bool hlg_display = false;                    ///< behind the curve goes hlg_to_display (hlg_rendering.h)
   std::optional<Matrix3> matrix;               ///< to Rec.709, when the primaries are others
   double gain = 1;  ///< light of the scene ÷ light that is stored, whatever curve and matrix
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix

@@ -47,7 +47,7 @@ SaidColor said_by(const AVCodecParameters& parameters) {
 int chroma_place_of(const AVFrame& frame) { return number_of(frame.chroma_location); }
 
 MovieColor color_of(const AVFrame& frame, AVCodecID codec, const std::string& format, const SaidColor& around,
-                    std::string& differs) {
+                    std::vector<std::string>& differs) {
   MovieColor color;
   const AVPixFmtDescriptor* pixels = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
   color.rgb = pixels && (pixels->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
@@ -57,10 +57,10 @@ MovieColor color_of(const AVFrame& frame, AVCodecID codec, const std::string& fo
   color.transfer = merge(own.transfer, around.transfer);
   color.matrix = color.rgb ? own.matrix : merge(own.matrix, around.matrix, codec != AV_CODEC_ID_DNXHD);
   if (merge.disagree)
-    differs = fmt::format(
+    differs.push_back(fmt::format(
         "its container says primaries {}, transfer {}, matrix {} (of H.273), its stream {}, {}, {}; {} counts",
         around.primaries, around.transfer, around.matrix, own.primaries, own.transfer, own.matrix,
-        merge.outer_first ? "the container" : "the stream");
+        merge.outer_first ? "the container" : "the stream"));
   for (const AVCodecID still : {AV_CODEC_ID_MJPEG, AV_CODEC_ID_GIF, AV_CODEC_ID_APNG, AV_CODEC_ID_PNG, AV_CODEC_ID_BMP,
                                 AV_CODEC_ID_WEBP, AV_CODEC_ID_PPM, AV_CODEC_ID_PGM, AV_CODEC_ID_PAM, AV_CODEC_ID_PFM})
     color.picture = color.picture || codec == still;

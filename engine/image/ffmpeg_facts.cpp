@@ -137,7 +137,7 @@ MovieFacts facts_of(FfmpegInput& input, const AVFrame& first) {
     facts.has_alpha = palette || (format->flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
     facts.grey = format->nb_components <= 2 && !palette;
   }
-  facts.color = color_of(first, stream.codecpar->codec_id, facts.container, input.said_around(), facts.two_colors);
+  facts.color = color_of(first, stream.codecpar->codec_id, facts.container, input.said_around(), facts.warnings);
   use_aspect(input, first, facts);
   if (const std::int32_t* matrix = matrix_of(first, stream)) use_display_matrix(matrix, facts);
   facts.leaves_alpha = input.leaves_alpha();

@@ -124,7 +124,8 @@ class FfmpegMovie : public MovieSource {
       facts_.clock = index_.parts;
       facts_.last_length = index_.missing == 0 ? index_.last_length : 0;
       facts_.missing = index_.missing;
-      fill_in(facts_);
+      if (const auto filled = fill_in(facts_); !filled)
+        return Error{ErrorKind::io, filled.error().message, request_.file.string()};
       AFTERGLOW_CHECK(
           check_sides({0, 0, facts_.size.width, facts_.size.height}, "frame", request_.limits, request_.file));
       if (is_readable_format(static_cast<AVPixelFormat>((*first)->format))) return {};

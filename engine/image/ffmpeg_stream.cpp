@@ -93,7 +93,7 @@ class FfmpegStream : public MovieFrames {
       const AVFormatContext& container = input_->container();
       for (unsigned i = 0; i < container.nb_streams; ++i)
         if (container.streams[i]->codecpar->codec_type == AVMEDIA_TYPE_AUDIO) facts_.sound = true;
-      fill_in(facts_);
+      if (const auto filled = fill_in(facts_); !filled) return broken(filled.error().message);
     }
     if (frame->width != facts_.stored.width || frame->height != facts_.stored.height)
       return broken(fmt::format("is {}x{} in a stream of {}x{}", frame->width, frame->height, facts_.stored.width,

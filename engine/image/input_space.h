@@ -18,7 +18,9 @@ struct InputSpace {
   double (*to_linear)(double);  ///< stored value (0…1 of full codes) to light; 1 is a white that diffuses
   Chromaticities primaries;
   bool of_display = false;  ///< a curve of displays: eight bits show no steps
-  bool linear() const;      ///< stored values are light
+  /// What an HLG display shows: behind the curve goes hlg_to_display (hlg_rendering.h).
+  bool hlg_display = false;
+  bool linear() const;  ///< stored values are light
 };
 
 /// All of them, by name. docs/math.md §24 has curves and sources.

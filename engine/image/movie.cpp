@@ -128,7 +128,7 @@ void tell(const Movie& movie, Diagnostics& diagnostics) {
   const MovieFacts& facts = movie.facts();
   const std::string name = movie.file().string();
   for (const std::string& note : facts.notes) diagnostics.note(fmt::format("{}: {}", name, note));
-  if (!facts.two_colors.empty()) diagnostics.warn(fmt::format("{}: {}", name, facts.two_colors));
+  for (const std::string& warning : facts.warnings) diagnostics.warn(fmt::format("{}: {}", name, warning));
   if (facts.interlaced)
     diagnostics.warn(fmt::format("{}: is interlaced; its frames are read with both fields in them", name));
   if (facts.leaves_alpha)

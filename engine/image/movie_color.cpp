@@ -86,12 +86,18 @@ void use_transfer(ColorEncoding& encoding, int code) {
 }
 
 bool is_known_transfer(int code) { return (code >= 4 && code <= 18) || code == 1; }
-bool is_known_matrix(int code) { return code == 1 || (code >= 4 && code <= 10) || code == 14; }
+bool is_known_matrix(int code) { return code == 1 || (code >= 4 && code <= 9) || code == 12 || code == 14; }
+
+/// What no RGB is made of; null: it is made.
+const char* unreadable_matrix(int code) {
+  if (code == 10 || code == 13) return "constant luminance";
+  return code == 11 ? "SMPTE ST 2085" : nullptr;
+}
 
 /// The primaries that go with a matrix alone; BT.601's goes with several. None: it tells nothing.
 std::optional<int> primaries_with(int matrix) {
   if (matrix == 1) return 1;
-  if (matrix == 9 || matrix == 10) return 9;
+  if (matrix == 9) return 9;
   return std::nullopt;
 }
 
@@ -102,8 +108,11 @@ bool is_small(const Size& size) {
 
 }  // namespace
 
-void fill_in(MovieFacts& facts) {
+Result<void> fill_in(MovieFacts& facts) {
   MovieColor& color = facts.color;
+  if (const char* kind = color.rgb ? nullptr : unreadable_matrix(color.matrix))
+    return Error{ErrorKind::io,
+                 fmt::format("is stored by a matrix that is not read ({}, number {} of H.273)", kind, color.matrix)};
   const bool small = is_small(facts.stored), sixty = facts.stored.height == 480 || facts.stored.height == 486;
   std::vector<std::string> taken;
   const bool srgb = color.rgb || color.picture;
@@ -111,7 +120,8 @@ void fill_in(MovieFacts& facts) {
   const auto take = [&](int& code, bool known, int value, const char* what) {
     if (known) return;
     if (code != kUnsaid && code != 0 && code != 3)
-      facts.notes.push_back(fmt::format("its {} {} is not known", what, code));
+      facts.warnings.push_back(
+          fmt::format("its {} {} (of H.273) is not known here; its colours may be others", what, code));
     code = value;
     taken.emplace_back(what);
   };
@@ -125,6 +135,9 @@ void fill_in(MovieFacts& facts) {
   const bool primaries_said = color.primaries == 1 || primaries_of(color.primaries).has_value();
   take(color.primaries, primaries_said, srgb ? 1 : with_matrix.value_or(!small ? 1 : sixty ? 6 : 5), "primaries");
   take(color.transfer, is_known_transfer(color.transfer), srgb ? 13 : 1, "transfer");
+  constexpr int kIctcp = 14, kHlg = 18;
+  if (!color.rgb && color.matrix == kIctcp && color.transfer == kHlg)
+    facts.warnings.emplace_back("is stored as ICtCp of HLG: saturated colours are read up to 3 % off");
   const bool wide = color.primaries == 9;
   const bool usual = color.rgb && color.picture;  // sRGB, as that of any picture; its own chunks say more
   if (!taken.empty() && !usual)
@@ -133,6 +146,7 @@ void fill_in(MovieFacts& facts) {
                                       : wide                          ? "BT.2020, as the rest,"
                                       : small && color.primaries != 1 ? "BT.601, as of standard definition,"
                                                                       : "BT.709"));
+  return {};
 }
 
 bool use_codes(int primaries, int transfer, ColorEncoding& encoding) {

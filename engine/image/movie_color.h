@@ -12,8 +12,9 @@ inline constexpr int kUnsaid = 2;
 
 /// Fills in the matrix, primaries and transfer that a video does not say, and notes what was taken: RGB and codecs of
 /// still pictures are sRGB; anything else is BT.709, or BT.601 when it is no larger than standard definition. A matrix
-/// of BT.709 or BT.2020 that it says tells of its primaries, and primaries of BT.2020 of its matrix.
-void fill_in(MovieFacts& facts);
+/// of BT.709 or BT.2020 that it says tells of its primaries, and primaries of BT.2020 of its matrix. Errors (io, "is
+/// …"): a matrix of which no RGB is made.
+Result<void> fill_in(MovieFacts& facts);
 
 /// Curve and primaries by their numbers in H.273, over what `encoding` has; 2 leaves them. False: one has no meaning
 /// here, and nothing is changed.

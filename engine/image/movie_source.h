@@ -52,7 +52,6 @@ struct MovieFacts {
   bool sound = false;           ///< of what cannot be sought in: there is sound beside the pictures
   bool hdr_metadata = false;    ///< it says which display it was made on, or how bright it gets (HDR10)
   MovieColor color;
-  std::string two_colors;        ///< what its container and its stream say of their colours, where they disagree
   Rational rate{0, 1};           ///< frames a second, on the average; 0: unknown
   Rational time_base{1, 1};      ///< seconds of a time stamp's unit
   std::vector<long long> pts;    ///< of each frame that the file has or ought to have, in the order in which they show
@@ -61,7 +60,8 @@ struct MovieFacts {
   std::size_t missing = 0;       ///< so many at the end are not there: the file is shorter than it says
   std::string time_code;         ///< of the first frame, "01:02:03:04" (kept_values.h); empty: none
   bool leaves_alpha = false;     ///< an alpha that is not read
-  std::vector<std::string> notes;  ///< what people may want to know
+  std::vector<std::string> notes;     ///< what people may want to know
+  std::vector<std::string> warnings;  ///< what makes its colours doubtful
 };
 
 /// Thread-safe.

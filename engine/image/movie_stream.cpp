@@ -184,6 +184,7 @@ Result<std::unique_ptr<MovieStream>> MovieStream::open(std::shared_ptr<FileDescr
   if (facts.rate.denominator > 0)
     stream->state_->fps = static_cast<double>(facts.rate.numerator) / facts.rate.denominator;
   for (const std::string& note : facts.notes) diagnostics.note(fmt::format("{}: {}", kName, note));
+  for (const std::string& warning : facts.warnings) diagnostics.warn(fmt::format("{}: {}", kName, warning));
   std::promise<Result<std::shared_ptr<MovieSource>>> there;
   there.set_value(*first);
   stream->state_->coming = there.get_future();

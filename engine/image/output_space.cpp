@@ -16,6 +16,7 @@
 
 #include "core/half.h"
 #include "core/processor.h"
+#include "image/hlg_rendering.h"
 
 namespace afterglow {
 namespace {
@@ -49,6 +50,7 @@ OutputSpace::OutputSpace(const InputSpace& space)
     : name_(space.name),
       of_display_(space.of_display),
       linear_(space.linear()),
+      hlg_display_(space.hlg_display),
       primaries_(space.primaries),
       to_linear_(space.to_linear) {
   of_zero_ = static_cast<float>(inverse_of(space.to_linear, 0));
@@ -71,6 +73,12 @@ const OutputSpace& OutputSpace::of(const InputSpace& space) {
   auto& one = made.at(index);
   if (!one) one.reset(new OutputSpace(space));
   return *one;
+}
+
+/// What the curve takes, of linear Rec.709.
+void OutputSpace::to_own(float* rgb) const {
+  if (matrix_) multiply(*matrix_, rgb, rgb);
+  if (hlg_display_) hlg_to_scene(rgb);
 }
 
 float OutputSpace::stored_below(float light) const {
@@ -148,7 +156,7 @@ void OutputSpace::encode(const float* rgba, std::size_t pixels, float* stored) c
 #endif
   for (std::size_t i = 0; i < pixels; ++i, rgba += 4, stored += 4) {
     std::array<float, 4> pixel{rgba[0], rgba[1], rgba[2], rgba[3]};
-    if (matrix_) multiply(*matrix_, pixel.data(), pixel.data());
+    to_own(pixel.data());
     for (std::size_t c = 0; c < 3; ++c) stored[c] = stored_value(pixel[c]);
     stored[3] = pixel[3];
   }
@@ -183,7 +191,7 @@ void OutputSpace::encode_beyond(const float* rgba, std::size_t pixels, float* st
   const auto white = static_cast<float>(to_linear_(1));
   for (std::size_t i = 0; i < pixels * 4; i += 4) {
     std::array<float, 3> light{rgba[i], rgba[i + 1], rgba[i + 2]};
-    if (matrix_) multiply(*matrix_, light.data(), light.data());
+    to_own(light.data());
     for (std::size_t c = 0; c < 3; ++c)
       if (light[c] < darkest_ || light[c] > white) stored[i + c] = beyond(light[c]);
   }
@@ -218,17 +226,17 @@ SpaceCodes space_codes(const OutputSpace& space) {
     std::string_view name;
     SpaceCodes codes;
   };
-  constexpr std::array kAll{Named{"rec709", {1, 1}},      Named{"srgb", {1, 13}},       Named{"gamma22", {1, 4}},
-                            Named{"gamma24", {1, 2}},     Named{"linear", {1, 8}},      Named{"pq", {9, 16}},
-                            Named{"hlg", {9, 18}},        Named{"lin_rec2020", {9, 8}}, Named{"lin_p3d65", {12, 8}},
-                            Named{"display_p3", {12, 13}}};
+  constexpr std::array kAll{Named{"rec709", {1, 1}},     Named{"srgb", {1, 13}},       Named{"gamma22", {1, 4}},
+                            Named{"gamma24", {1, 2}},    Named{"linear", {1, 8}},      Named{"pq", {9, 16}},
+                            Named{"hlg", {9, 18}},       Named{"hlg_1000", {9, 18}},   Named{"lin_rec2020", {9, 8}},
+                            Named{"lin_p3d65", {12, 8}}, Named{"display_p3", {12, 13}}};
   for (const auto& [name, codes] : kAll)
     if (name == space.name()) return codes;
   return {};
 }
 
 bool must_be_told(const OutputSpace& space) {
-  constexpr std::array<std::string_view, 4> kThese{"display_p3", "adobe_rgb", "pq", "hlg"};
+  constexpr std::array<std::string_view, 5> kThese{"display_p3", "adobe_rgb", "pq", "hlg", "hlg_1000"};
   return std::ranges::find(kThese, space.name()) != kThese.end();
 }
 

@@ -39,9 +39,10 @@ class OutputSpace {
   float stored_below(float light) const;
   std::size_t encode_pairs(const float* rgba, std::size_t pixels, float* stored) const;
   float beyond(float light) const;
+  void to_own(float* rgb) const;
 
   const char* name_;
-  bool of_display_, linear_;
+  bool of_display_, linear_, hlg_display_;
   Chromaticities primaries_;
   std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others
   float of_zero_ = 0;              ///< what light 0 is stored as

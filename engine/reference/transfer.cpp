@@ -44,7 +44,14 @@ Primaries primaries_of(const std::string& name) {
   if (name == "logc3") return {{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
   if (name == "logc4") return {{0.7347, 0.2653}, {0.1424, 0.8576}, {0.0991, -0.0308}, kD65};
   if (name == "slog3") return {{0.766, 0.275}, {0.225, 0.800}, {0.089, -0.087}, kD65};
-  if (name == "pq" || name == "hlg" || name == "lin_rec2020")
+  if (name == "slog3_sgamut3") return {{0.730, 0.280}, {0.140, 0.855}, {0.100, -0.050}, kD65};
+  if (name == "vlog") return {{0.730, 0.280}, {0.165, 0.840}, {0.100, -0.030}, kD65};
+  if (name == "clog2" || name == "clog3") return {{0.740, 0.270}, {0.170, 1.140}, {0.080, -0.100}, kD65};
+  if (name == "log3g10") return {{0.780308, 0.304253}, {0.121595, 1.493994}, {0.095612, -0.084589}, kD65};
+  if (name == "davinci_intermediate") return {{0.8000, 0.3130}, {0.1682, 0.9877}, {0.0790, -0.1155}, kD65};
+  if (name == "bmd_film5")
+    return {{0.7177215, 0.3171181}, {0.2280410, 0.8615690}, {0.1005841, -0.0820452}, {0.3127170, 0.3290312}};
+  if (name == "pq" || name == "hlg" || name == "hlg_1000" || name == "lin_rec2020" || name == "apple_log")
     return {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
   return kOwn;
 }
@@ -100,6 +107,75 @@ double slog3(double x) {
 double slog3_light(double v) {
   return v >= 171.2102946929 / 1023 ? std::pow(10, (v * 1023 - 420) / 261.5) * (0.18 + 0.01) - 0.01
                                     : (v * 1023 - 95) * 0.01125 / (171.2102946929 - 95);
+}
+
+// Panasonic, V-Log/V-Gamut Reference Manual: both pieces as the manual writes them.
+double vlog(double x) { return x < 0.01 ? 5.6 * x + 0.125 : 0.241514 * std::log10(x + 0.00873) + 0.598206; }
+double vlog_light(double v) {
+  return v < 0.181 ? (v - 0.125) / 5.6 : std::pow(10, (v - 0.598206) / 0.241514) - 0.00873;
+}
+
+// Canon Log 2 and 3 of 2016, whose x is light over 0.9.
+double clog2(double light) {
+  const double x = light / 0.9;
+  return x < 0 ? -(0.24136077 * std::log10(1 - 87.099375 * x) - 0.092864125)
+               : 0.24136077 * std::log10(87.099375 * x + 1) + 0.092864125;
+}
+double clog2_light(double v) {
+  return 0.9 * (v < 0.092864125 ? -(std::pow(10, (0.092864125 - v) / 0.24136077) - 1) / 87.099375
+                                : (std::pow(10, (v - 0.092864125) / 0.24136077) - 1) / 87.099375);
+}
+double clog3(double light) {
+  const double x = light / 0.9;
+  if (x < -0.014) return -(0.36726845 * std::log10(1 - 14.98325 * x) - 0.12783901);
+  if (x <= 0.014) return 1.9754798 * x + 0.12512219;
+  return 0.36726845 * std::log10(14.98325 * x + 1) + 0.12240537;
+}
+double clog3_light(double v) {
+  if (v < 0.097465473) return 0.9 * -(std::pow(10, (0.12783901 - v) / 0.36726845) - 1) / 14.98325;
+  if (v <= 0.15277891) return 0.9 * (v - 0.12512219) / 1.9754798;
+  return 0.9 * (std::pow(10, (v - 0.12240537) / 0.36726845) - 1) / 14.98325;
+}
+
+// RED's white paper of 2017: log3G10 of x + 0.01.
+double log3g10(double x) {
+  const double y = x + 0.01;
+  return y < 0 ? y * 15.1927 : 0.224282 * std::log10(y * 155.975327 + 1);
+}
+double log3g10_light(double v) { return (v < 0 ? v / 15.1927 : (std::pow(10, v / 0.224282) - 1) / 155.975327) - 0.01; }
+
+// DaVinci Intermediate: A, B, C, M and the two cuts of its paper.
+double davinci(double x) { return x <= 0.00262409 ? x * 10.44426855 : (std::log2(x + 0.0075) + 7) * 0.07329248; }
+double davinci_light(double v) { return v <= 0.02740668 ? v / 10.44426855 : std::exp2(v / 0.07329248 - 7) - 0.0075; }
+
+// Blackmagic Film, generation 5.
+struct Film5 {
+  static constexpr double a = 0.08692876065491224, b = 0.005494072432257808, c = 0.5300133392291939,
+                          d = 8.283605932402494, e = 0.09246575342465753, cut = 0.005;
+};
+double film5(double x) {
+  using K = Film5;
+  return x < K::cut ? K::d * x + K::e : K::a * std::log(x + K::b) + K::c;
+}
+double film5_light(double v) {
+  using K = Film5;
+  return v < K::d * K::cut + K::e ? (v - K::e) / K::d : std::exp((v - K::c) / K::a) - K::b;
+}
+
+// Apple Log: R0, Rt, c, beta, gamma and delta of its paper.
+struct AppleLog {
+  static constexpr double r0 = -0.05641088, rt = 0.01, c = 47.28711236, beta = 0.00964052, gamma = 0.08550479,
+                          delta = 0.69336945, pt = c * (rt - r0) * (rt - r0);
+};
+double apple_log(double x) {
+  using K = AppleLog;
+  if (x < K::r0) return 0;
+  return x < K::rt ? K::c * (x - K::r0) * (x - K::r0) : K::gamma * std::log2(x + K::beta) + K::delta;
+}
+double apple_log_light(double v) {
+  using K = AppleLog;
+  if (v < 0) return K::r0;
+  return v < K::pt ? std::sqrt(v / K::c) + K::r0 : std::exp2((v - K::delta) / K::gamma) - K::beta;
 }
 
 // SMPTE ST 2084, with 203 cd/m² as 1.
@@ -166,6 +242,22 @@ double rec709_light(double v) {
   return std::copysign(x, v);
 }
 
+// BT.2100, table 5: a display of 1000 cd/m² shows alpha·Ys^(gamma − 1)·Es, with gamma 1.2; 203 cd/m² is 1. What is
+// "light" of one channel here is Es·(1000/203)^(1/gamma), so that greys are its power gamma.
+constexpr double kHlgGamma = 1.2;
+const double kHlgPeak = std::pow(1000.0 / 203, 1 / kHlgGamma);
+double hlg_1000(double x) { return Hlg{}.oetf(std::max(x, 0.0) / kHlgPeak); }
+double hlg_1000_light(double v) { return Hlg{}.inverse(std::max(v, 0.0)) * kHlgPeak; }
+Rgb hlg_display(const Rgb& scene) {
+  const double luminance = glm::dot(Rgb(0.2627, 0.6780, 0.0593), scene);
+  return luminance > 0 ? scene * std::pow(luminance, kHlgGamma - 1) : Rgb(0);
+}
+Rgb hlg_scene(const Rgb& light) {
+  const Rgb display = glm::max(light, Rgb(0));
+  const double luminance = glm::dot(Rgb(0.2627, 0.6780, 0.0593), display);
+  return luminance > 0 ? display * std::pow(luminance, (1 - kHlgGamma) / kHlgGamma) : Rgb(0);
+}
+
 struct Transfer {
   const char* name;
   double (*to_light)(double);
@@ -182,12 +274,21 @@ constexpr Transfer kTransfers[] = {{"aces2065_1", as_is, as_is},
                                    {"gamma22", gamma22_light, gamma22},
                                    {"gamma24", gamma24_light, gamma24},
                                    {"hlg", hlg_light, hlg},
+                                   {"hlg_1000", hlg_1000_light, hlg_1000},
                                    {"linear", as_is, as_is},
                                    {"logc3", logc3_light, logc3},
                                    {"logc4", logc4_light, logc4},
                                    {"pq", pq_light, pq},
                                    {"rec709", rec709_light, rec709},
                                    {"slog3", slog3_light, slog3},
+                                   {"slog3_sgamut3", slog3_light, slog3},
+                                   {"vlog", vlog_light, vlog},
+                                   {"clog2", clog2_light, clog2},
+                                   {"clog3", clog3_light, clog3},
+                                   {"log3g10", log3g10_light, log3g10},
+                                   {"davinci_intermediate", davinci_light, davinci},
+                                   {"bmd_film5", film5_light, film5},
+                                   {"apple_log", apple_log_light, apple_log},
                                    {"srgb", srgb_to_linear, linear_to_srgb}};
 
 const Transfer& transfer(const std::string& name) {
@@ -212,7 +313,7 @@ const std::vector<std::string>& table_spaces() {
     std::vector<std::string> all = transfer_names();
     std::erase_if(all, [](const std::string& name) {
       const bool linear = transfer(name).to_light == as_is && name != "linear";
-      return linear || name == "adobe_rgb" || name == "display_p3";  // of pictures alone
+      return linear || name == "adobe_rgb" || name == "display_p3" || name == "hlg_1000";  // of pictures alone
     });
     return all;
   }();
@@ -224,11 +325,12 @@ double light_to_transfer(const std::string& name, double light) { return transfe
 
 Rgb transfer_to_rec709(const std::string& name, const Rgb& stored) {
   const auto to_light = transfer(name).to_light;
-  return to_own(name) * Rgb(to_light(stored.r), to_light(stored.g), to_light(stored.b));
+  const Rgb light(to_light(stored.r), to_light(stored.g), to_light(stored.b));
+  return to_own(name) * (name == "hlg_1000" ? hlg_display(light) : light);
 }
 
 Rgb rec709_to_transfer(const std::string& name, const Rgb& light) {
-  const Rgb c = glm::inverse(to_own(name)) * light;
+  const Rgb own = glm::inverse(to_own(name)) * light, c = name == "hlg_1000" ? hlg_scene(own) : own;
   const auto from_light = transfer(name).from_light;
   return {from_light(c.r), from_light(c.g), from_light(c.b)};
 }

@@ -317,8 +317,8 @@
 ---@class afterglow.settings.lut : afterglow.EntryKeys
 ---@field file? string|afterglow.OfTime  The table: beside the preset or on the search path. None: no effect. default ""
 ---@field intensity? number|afterglow.Moving  How much of the table's colours: 0 none, 1 they alone. 0…1, default 1
----@field input? "linear"|"srgb"|"acescct"|"logc3"|"logc4"|"slog3"|"pq"|"hlg"|"gamma22"|"gamma24"|"cineon"|"rec709"|afterglow.OfTime  How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct, ARRI LogC3 (EI 800) or LogC4, Sony S-Log3, PQ, HLG, a power, Cineon printing density, the camera curve of Rec.709. default "srgb"
----@field output? "same"|"linear"|"srgb"|"acescct"|"logc3"|"logc4"|"slog3"|"pq"|"hlg"|"gamma22"|"gamma24"|"cineon"|"rec709"|afterglow.OfTime  How the colours are encoded that it gives; same: as its input. default "same"
+---@field input? "linear"|"srgb"|"acescct"|"logc3"|"logc4"|"slog3"|"pq"|"hlg"|"gamma22"|"gamma24"|"cineon"|"rec709"|"apple_log"|"bmd_film5"|"clog2"|"clog3"|"davinci_intermediate"|"log3g10"|"slog3_sgamut3"|"vlog"|afterglow.OfTime  How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct, ARRI LogC3 (EI 800) or LogC4, Sony S-Log3, PQ, HLG, a power, Cineon printing density, the camera curve of Rec.709, Apple Log, Blackmagic Film (generation 5), Canon Log 2 or 3, DaVinci Intermediate, RED Log3G10, S-Log3 of S-Gamut3, V-Log. default "srgb"
+---@field output? "same"|"linear"|"srgb"|"acescct"|"logc3"|"logc4"|"slog3"|"pq"|"hlg"|"gamma22"|"gamma24"|"cineon"|"rec709"|"apple_log"|"bmd_film5"|"clog2"|"clog3"|"davinci_intermediate"|"log3g10"|"slog3_sgamut3"|"vlog"|afterglow.OfTime  How the colours are encoded that it gives; same: as its input. default "same"
 
 ---Blurs what moves, by motion vectors.
 ---@class afterglow.settings.motion_blur : afterglow.EntryKeys

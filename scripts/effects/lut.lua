@@ -7,7 +7,8 @@
 local fx = require "afterglow"
 
 -- Numbers: shaders/lib/encoding.glsl.
-local encodings = { linear = 0, srgb = 1, acescct = 2, logc3 = 3, logc4 = 4, slog3 = 5, pq = 6, hlg = 7, gamma22 = 8, gamma24 = 9, cineon = 10, rec709 = 11 }
+local encodings = { linear = 0, srgb = 1, acescct = 2, logc3 = 3, logc4 = 4, slog3 = 5, pq = 6, hlg = 7, gamma22 = 8, gamma24 = 9, cineon = 10, rec709 = 11,
+  apple_log = 12, bmd_film5 = 13, clog2 = 14, clog3 = 15, davinci_intermediate = 16, log3g10 = 17, slog3_sgamut3 = 18, vlog = 19 }
 local of_displays = { srgb = true, gamma22 = true, gamma24 = true, rec709 = true }
 
 return fx.effect {
@@ -27,10 +28,12 @@ return fx.effect {
     intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the table's colours: 0 none, 1 they alone." },
     input = fx.enum {
       "linear", "srgb", "acescct", "logc3", "logc4", "slog3", "pq", "hlg", "gamma22", "gamma24", "cineon", "rec709",
-      default = "srgb", doc = "How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct, ARRI LogC3 (EI 800) or LogC4, Sony S-Log3, PQ, HLG, a power, Cineon printing density, the camera curve of Rec.709.",
+      "apple_log", "bmd_film5", "clog2", "clog3", "davinci_intermediate", "log3g10", "slog3_sgamut3", "vlog",
+      default = "srgb", doc = "How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct, ARRI LogC3 (EI 800) or LogC4, Sony S-Log3, PQ, HLG, a power, Cineon printing density, the camera curve of Rec.709, Apple Log, Blackmagic Film (generation 5), Canon Log 2 or 3, DaVinci Intermediate, RED Log3G10, S-Log3 of S-Gamut3, V-Log.",
     },
     output = fx.enum {
       "same", "linear", "srgb", "acescct", "logc3", "logc4", "slog3", "pq", "hlg", "gamma22", "gamma24", "cineon", "rec709",
+      "apple_log", "bmd_film5", "clog2", "clog3", "davinci_intermediate", "log3g10", "slog3_sgamut3", "vlog",
       default = "same", doc = "How the colours are encoded that it gives; same: as its input.",
     },
   },

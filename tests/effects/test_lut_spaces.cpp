@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Colour spaces that tables are made for: shaders, what reads pictures, and the oracle, against each other and against
 // the values that colour-science publishes.
+#include <OpenColorIO/OpenColorIO.h>
+
 #include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <random>
 
 #include "files.h"
 #include "harness.h"
 #include "image/input_space.h"
 #include "reference/transfer.h"
+
+namespace OCIO = OCIO_NAMESPACE;
 
 namespace afterglow {
 namespace {
@@ -53,7 +59,8 @@ TEST(Transfer, IsWhatPicturesAreReadBy) {
     ColorEncoding encoding;
     use_input_space(space, encoding);
     const Rgb stored(0.4, 0.5, 0.3);
-    const Rgb curve(space.to_linear(stored.r), space.to_linear(stored.g), space.to_linear(stored.b));
+    Rgb curve(space.to_linear(stored.r), space.to_linear(stored.g), space.to_linear(stored.b));
+    if (space.hlg_display) curve *= std::pow(0.2627 * curve.r + 0.6780 * curve.g + 0.0593 * curve.b, 0.2);
     const Rgb light = transfer_to_rec709(space.name, stored);
     for (int row = 0; row < 3; ++row) {
       double sum = curve[row];
@@ -75,6 +82,45 @@ TEST(Transfer, GoesBackAndRises) {
       EXPECT_GT(code, before) << name << " " << light;
       EXPECT_NEAR(transfer_to_light(name, code), light, 1e-9 * std::max(1.0, light)) << name << " " << light;
       before = code;
+    }
+  }
+}
+
+/// Curves and primaries of cameras by OpenColorIO's own, which goes to ACES2065-1 as each maker's transform does.
+TEST(Transfer, CamerasAreThoseOfOpenColorIo) {
+  const auto xyz = [](double x, double y) { return Rgb(x / y, 1, (1 - x - y) / y); };
+  const glm::dmat3 ap0 = glm::transpose(glm::dmat3(0.9525523959, 0, 0.0000936786, 0.3439664498, 0.7281660966,
+                                                   -0.0721325464, 0, 0, 1.0088251844));  // written by rows
+  const auto adapted = [&](const glm::dmat3& by_rows) {
+    const glm::dmat3 cones = glm::transpose(by_rows);
+    const Rgb gain = (cones * xyz(0.3127, 0.3290)) / (cones * xyz(0.32168, 0.33767));
+    return glm::inverse(cones) * glm::dmat3(gain.r, 0, 0, 0, gain.g, 0, 0, 0, gain.b) * cones;
+  };
+  const glm::dmat3 cat02 = adapted({0.7328, 0.4296, -0.1624, -0.7036, 1.6975, 0.0061, 0.0030, 0.0136, 0.9834});
+  const glm::dmat3 bradford = adapted({0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296});
+  const glm::dmat3 to_709 =
+      glm::transpose(glm::dmat3(3.2409699419, -1.5373831776, -0.4986107603, -0.9692436363, 1.8759675015, 0.0415550574,
+                                0.0556300797, -0.2039769589, 1.0569715142));
+  for (const auto& [name, style, white] : {std::tuple("vlog", "PANASONIC_VLOG-VGAMUT_to_ACES2065-1", bradford),
+                                           {"clog2", "CANON_CLOG2-CGAMUT_to_ACES2065-1", cat02},
+                                           {"clog3", "CANON_CLOG3-CGAMUT_to_ACES2065-1", cat02},
+                                           {"log3g10", "RED_LOG3G10-RWG_to_ACES2065-1", bradford},
+                                           {"slog3", "SONY_SLOG3-SGAMUT3.CINE_to_ACES2065-1", cat02},
+                                           {"slog3_sgamut3", "SONY_SLOG3-SGAMUT3_to_ACES2065-1", cat02},
+                                           {"logc3", "ARRI_ALEXA-LOGC-EI800-AWG_to_ACES2065-1", cat02}}) {
+    const auto transform = OCIO::BuiltinTransform::Create();
+    transform->setStyle(style);
+    const auto cpu =
+        OCIO::Config::CreateRaw()->getProcessor(transform)->getOptimizedCPUProcessor(OCIO::OPTIMIZATION_NONE);
+    for (const Rgb& stored :
+         {Rgb(0.02), Rgb(0.11), Rgb(0.13), Rgb(0.2), Rgb(0.4), Rgb(0.7), Rgb(0.5, 0.4, 0.3), Rgb(0.3, 0.5, 0.6)}) {
+      float rgb[3] = {static_cast<float>(stored.r), static_cast<float>(stored.g), static_cast<float>(stored.b)};
+      cpu->applyRGB(rgb);
+      const Rgb expected = to_709 * (white * (ap0 * Rgb(rgb[0], rgb[1], rgb[2])));
+      const Rgb light = transfer_to_rec709(name, stored);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(light[c], expected[c], 3e-5 * std::max(1.0, std::abs(expected[c])))
+            << name << " " << stored.r << " " << c;
     }
   }
 }

@@ -233,6 +233,52 @@ TEST_F(Clips, AlphaIsMultipliedInLight) {
   EXPECT_NEAR(picture.color.at(x, y)[0], alpha * std::pow((stored + 0.055) / 1.055, 2.4), 1e-5);
 }
 
+/// A clip of one colour in 10 bits of full range, by the numbers of Y, Cb and Cr.
+class Matrices : public Clips {
+ protected:
+  std::string clip(const std::string& name, std::array<double, 3> ycc, const std::string& tags) {
+    std::ofstream raw(path("colour.raw"), std::ios::binary);
+    for (int plane = 0; plane < 3; ++plane) {
+      const int code = static_cast<int>(std::lround((ycc[static_cast<std::size_t>(plane)] + (plane ? 0.5 : 0)) * 1023));
+      for (int i = 0; i < 32 * 32; ++i) raw.put(static_cast<char>(code & 255)).put(static_cast<char>(code >> 8));
+    }
+    raw.close();
+    ffmpeg(fmt::format("-f rawvideo -pix_fmt yuv444p10le -s 32x32 -color_range pc -i '{}' {} -c:v ffv1 -level 3 '{}'",
+                       path("colour.raw"), tags, path(name)));
+    return path(name);
+  }
+};
+
+/// H.273, matrix 12: weights of light are those of the primaries, here of P3.
+TEST_F(Matrices, OfPrimariesIsRead) {
+  const double kr = 0.22897456, kb = 0.07928691, r = 0.8, g = 0.3, b = 0.5;
+  const double y = kr * r + (1 - kr - kb) * g + kb * b;
+  const auto movie = open(clip("derived.mkv", {y, (b - y) / (2 * (1 - kb)), (r - y) / (2 * (1 - kr))},
+                               tags_of("chroma-derived-nc", "pc", "smpte432", "iec61966-2-1")));
+  ASSERT_TRUE(movie);
+  EXPECT_THAT(movie->facts().warnings, testing::IsEmpty());
+  std::vector<float> row(32 * 3);
+  std::vector<ReadTarget> targets;
+  for (int channel = 0; channel < 3; ++channel) targets.push_back({channel, row.data() + channel, 3, 0});
+  const auto read = Movie::frame(movie, 0)->read(0, targets);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_NEAR(row[0], r, 2e-3);
+  EXPECT_NEAR(row[1], g, 2e-3);
+  EXPECT_NEAR(row[2], b, 2e-3);
+}
+
+/// Their luma is made of light: RGB by a matrix alone would have other greys.
+TEST_F(Matrices, WithoutRgbAreRefused) {
+  for (const auto& [matrix, transfer, number] :
+       {std::tuple("bt2020c", "bt2020-10", 10), {"chroma-derived-c", "bt709", 13}, {"smpte2085", "smpte2084", 11}}) {
+    const std::string file = clip("refused.mkv", {0.5, 0, 0}, tags_of(matrix, "pc", "bt2020", transfer));
+    const auto movie = try_open(file);
+    ASSERT_FALSE(movie) << matrix;
+    EXPECT_THAT(movie.error().message, testing::HasSubstr("is stored by a matrix that is not read")) << matrix;
+    EXPECT_THAT(movie.error().message, testing::HasSubstr(fmt::format("number {} of H.273", number)));
+  }
+}
+
 /// Grey that says neither matrix nor range is full, as for FFmpeg; what says one of them is held to it.
 TEST_F(Clips, PlainGreyIsOfFullRange) {
   constexpr int kWidth = 64;

@@ -40,7 +40,7 @@ TEST_F(Tags, OfTheContainerCountWhereTheStreamSaysNothing) {
     EXPECT_EQ(color.transfer, 16) << kind.to;
     EXPECT_EQ(color.matrix, 9) << kind.to;
     EXPECT_THAT(movie->facts().notes, Not(Contains(HasSubstr("does not say")))) << kind.to;
-    EXPECT_THAT(movie->facts().two_colors, testing::IsEmpty()) << kind.to;
+    EXPECT_THAT(movie->facts().warnings, testing::IsEmpty()) << kind.to;
   }
 }
 
@@ -67,7 +67,7 @@ TEST_F(Tags, TheMatrixOfDnxhrIsTheContainers) {
   const auto movie = open(clip("a.mov", encoded("-c:v dnxhd -profile:v dnxhr_hqx -pix_fmt yuv422p10le -s 256x128"), 2));
   ASSERT_TRUE(movie);
   EXPECT_EQ(movie->facts().color.matrix, 9);
-  EXPECT_THAT(movie->facts().two_colors, testing::IsEmpty());
+  EXPECT_THAT(movie->facts().warnings, testing::IsEmpty());
 }
 
 }  // namespace

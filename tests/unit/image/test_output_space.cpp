@@ -19,7 +19,11 @@ TEST_P(Spaces, GoThereAndBack) {
   const Matrix3 matrix = to_rec709(space.primaries);
   for (int i = 0; i <= 4095; ++i) {
     const double stored = i / 4095.0, other = (4095 - i) / 4095.0;
-    const double light[3] = {space.to_linear(stored), space.to_linear(other), space.to_linear(stored)};
+    double light[3] = {space.to_linear(stored), space.to_linear(other), space.to_linear(stored)};
+    if (space.hlg_display) {
+      const double luminance = 0.2627 * light[0] + 0.6780 * light[1] + 0.0593 * light[2];
+      for (double& channel : light) channel *= std::pow(luminance, 0.2);
+    }
     float pixel[4] = {0, 0, 0, 0.25f};
     for (std::size_t c = 0; c < 3; ++c)
       pixel[c] = static_cast<float>(matrix[c][0] * light[0] + matrix[c][1] * light[1] + matrix[c][2] * light[2]);

@@ -73,8 +73,9 @@ TEST_F(Lengths, Messages) {
   EXPECT_EQ(
       error("input_space = \"logc\""),
       "preset.lua:3: error: fx.stack: input_space: 'logc' is no input space; allowed: aces2065_1, acescct, acescg, "
-      "adobe_rgb, cineon, display_p3, gamma22, gamma24, hlg, lin_p3d65, lin_rec2020, linear, logc3, logc4, pq, rec709, "
-      "slog3, srgb; did you "
+      "adobe_rgb, apple_log, bmd_film5, cineon, clog2, clog3, davinci_intermediate, display_p3, gamma22, gamma24, hlg, "
+      "hlg_1000, lin_p3d65, lin_rec2020, linear, log3g10, logc3, logc4, pq, rec709, slog3, slog3_sgamut3, srgb, vlog; "
+      "did you "
       "mean 'logc3'?");
 }
 
