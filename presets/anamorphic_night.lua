@@ -6,6 +6,7 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Anamorphic night",
   requires = "0.2",
+  reference_height = 1080,
   fx.bloom { mode = "scattering", threshold = 1, knee = 0.6, intensity = 0.18, scatter = 0.65, fade_fireflies = true, edges = "mirror" },
   fx.anamorphic_streaks { threshold = 8, stretch = 0.7, intensity = 0.2, tint = { 0.35, 0.5, 1 } },
   fx.chromatic_aberration { intensity = 0.2, samples = 8 },

@@ -5,6 +5,7 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Clean product shot",
   requires = "0.2",
+  reference_height = 1080,
   fx.ssao { radius = 0.4, intensity = 0.7, samples = 24 },
   fx.bloom { mode = "scattering", threshold = 1.2, knee = 0.6, intensity = 0.06, scatter = 0.6, fade_fireflies = true, edges = "mirror" },
   fx.curves { by = "luminance", shadows = 0.12, highlights = -0.08 },

@@ -6,6 +6,7 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Faded film",
   requires = "0.2",
+  reference_height = 1080,
   fx.bloom { mode = "scattering", threshold = 0.4, knee = 1, intensity = 0.15, scatter = 0.6, fade_fireflies = true, edges = "mirror" },
   fx.vignette { intensity = 0.3, smoothness = 0.6, color = { 0.25, 0.16, 0.1 } },
   fx.white_balance { temperature = 18, tint = -6 },

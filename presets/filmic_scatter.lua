@@ -6,7 +6,8 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Filmic scatter",
   requires = "0.2",
-  fx.bloom { mode = "scattering", threshold = 0, knee = 0, intensity = 0.12, scatter = 0.45, fade_fireflies = true },
+  reference_height = 1080,
+  fx.bloom { mode = "scattering", threshold = 0, knee = 0, intensity = 0.12, scatter = 0.45, fade_fireflies = true, edges = "mirror" },
   fx.color_adjustments { post_exposure = 0.5, contrast = 5, color_filter = { 1.03, 1.0, 0.95 }, saturation = -5 },
   fx.tone_mapping { mode = "aces" },
 }

@@ -10,8 +10,8 @@ return fx.stack {
   fx.glare { kind = "fog_glow", threshold = 1, clamp = 30, intensity = 0.22, size = 0.9, tint = { 1, 0.82, 0.58 } },
   fx.vignette { intensity = 0.2, smoothness = 0.6, color = { 0.12, 0.06, 0.03 } },
   fx.white_balance { temperature = 28, tint = 5 },
-  fx.curves { shadows = 0.15, highlights = -0.1, blue = { 0.22, -0.05, -0.2 }, red = { -0.05, 0.05, 0.05 }, yellows = { -8, 10, 0 } },
-  fx.color_adjustments { post_exposure = 0.25, contrast = 20, color_filter = { 1.06, 0.99, 0.9 }, saturation = 26 },
-  fx.tone_mapping { mode = "agx" },
+  fx.curves { shadows = 0.35, highlights = -0.1, blue = { 0.22, -0.05, -0.2 }, red = { -0.05, 0.05, 0.05 }, yellows = { -8, 10, 0 } },
+  fx.color_adjustments { post_exposure = 0.4, contrast = 2, color_filter = { 1.05, 0.99, 0.9 }, saturation = 4 },
+  fx.tone_mapping { mode = "aces", full_white = true },  -- turns bright reds to amber, as flames are; AgX would leave lanterns pink
   fx.film_grain { intensity = 0.1, size = 1.3 },
 }

@@ -6,6 +6,7 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Punchy LDR glow",
   requires = "0.2",
-  fx.bloom { mode = "scattering", threshold = 0.65, knee = 0.5, intensity = 0.35, scatter = 0.6 },
+  reference_height = 1080,
+  fx.bloom { mode = "scattering", threshold = 0.65, knee = 0.5, intensity = 0.35, scatter = 0.6, edges = "mirror" },
   fx.color_adjustments { post_exposure = -0.15, contrast = 8, saturation = 15 },
 }

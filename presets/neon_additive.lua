@@ -7,7 +7,8 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Additive neon",
   requires = "0.2",
-  fx.bloom { mode = "additive", threshold = 1.2, knee = 0.3, intensity = 0.2, max_iterations = 5, fade_fireflies = true },
+  reference_height = 1080,
+  fx.bloom { mode = "additive", threshold = 1.2, knee = 0.3, intensity = 0.15, clamp = 60, max_iterations = 5, fade_fireflies = true, edges = "mirror" },
   fx.color_adjustments { post_exposure = -0.15, contrast = 4, saturation = 20 },
   fx.tone_mapping { mode = "agx", look = "punchy" },
 }

@@ -6,7 +6,7 @@ return fx.stack {
   name = "Security camera",
   requires = "0.2",
   reference_height = 1080,
-  fx.bloom { mode = "scattering", threshold = 0.9, knee = 0.6, intensity = 0.22, scatter = 0.55, fade_fireflies = true },
+  fx.bloom { mode = "scattering", threshold = 0.9, knee = 0.6, intensity = 0.22, scatter = 0.55, fade_fireflies = true, edges = "mirror" },
   fx.lens_distortion { intensity = 0.3, scale = 1.08 },
   fx.vignette { intensity = 0.35, smoothness = 0.4 },
   fx.channel_mixer { red_out_red_in = 30, red_out_green_in = 60, red_out_blue_in = 10, green_out_red_in = 30, green_out_green_in = 60, green_out_blue_in = 10,
@@ -17,4 +17,5 @@ return fx.stack {
   fx.glitch { scan_line_jitter = 0.12, line_height = 3, rgb_split = 0 },
   fx.crt { lines = 360, curvature = 0, corner = 0, phosphor = 0, scan_lines = 0.6, glow = 0.1, convergence = 0, vignette = 0, softness = 0.8, brightness = 1.05 },
   fx.letterbox { aspect = 1.3333 },
+  fx.burn_in { text = "CAM 04  {timecode}", start = "03:12:00:00", position = { 0.145, 0.03 }, size = 0.035, box = 0, outline = 0.08 },
 }

@@ -6,8 +6,9 @@ local fx = require "afterglow"
 return fx.stack {
   name = "VHS tape",
   requires = "0.2",
+  reference_height = 1080,
   fx.directional_blur { distance = 3 },
-  fx.bloom { mode = "scattering", threshold = 0.6, knee = 1, intensity = 0.2, scatter = 0.5, fade_fireflies = true },
+  fx.bloom { mode = "scattering", threshold = 0.6, knee = 1, intensity = 0.2, scatter = 0.5, fade_fireflies = true, edges = "mirror" },
   fx.lens_distortion { intensity = 0.12, scale = 1.04 },
   fx.vignette { intensity = 0.3, smoothness = 0.3, rounded = false },
   fx.white_balance { temperature = -12, tint = 14 },
@@ -16,5 +17,5 @@ return fx.stack {
   fx.color_adjustments { order = 191, saturation = 10, mask = fx.mask.luma { from = 1.5, softness = 1.5, invert = true } },
   fx.tone_mapping { mode = "reinhard" },
   fx.film_grain { intensity = 0.4, response = 0.4, size = 1.6, colored = 1 },
-  fx.glitch { scan_line_jitter = 0.22, line_height = 2, rgb_split = 0.12, horizontal_shake = 0.02, edges = "stretch" },
+  fx.glitch { scan_line_jitter = 0.05, line_height = 2, rgb_split = 0.02, horizontal_shake = 0.02, edges = "stretch" },
 }

@@ -123,11 +123,14 @@ std::size_t number_begin(std::string_view name, std::size_t end) {
 
 FrameNumber frame_number(const fs::path& file) {
   const std::string stem = file.stem().string();
-  std::size_t end = stem.size();
-  while (end > 0 && !is_digit(stem[end - 1])) --end;
-  const std::size_t begin = number_begin(stem, end);
-  const std::size_t sign = begin < end && stem[begin] == '-' ? 1 : 0;
-  return {begin, end, static_cast<int>(end - begin - sign)};
+  for (std::size_t end = stem.size(); end > 0; --end) {
+    const bool last = is_digit(stem[end - 1]) && (end == stem.size() || !is_digit(stem[end]));
+    if (!last || (end < stem.size() && is_letter(stem[end]))) continue;
+    const std::size_t begin = number_begin(stem, end);
+    const std::size_t sign = begin < end && stem[begin] == '-' ? 1 : 0;
+    return {begin, end, static_cast<int>(end - begin - sign)};
+  }
+  return {};
 }
 
 std::optional<int> own_frame_number(const fs::path& file) {

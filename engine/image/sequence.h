@@ -36,8 +36,9 @@ Result<Pattern> parse_pattern(const std::string& text);
 /// behind a point, an underscore or nothing: "shot.-002", but not "shot-2".
 std::size_t number_begin(std::string_view name, std::size_t end);
 
-/// Of a name that has a number: where its last one lies, with its sign; the extension is left out. `digits` is 0 where
-/// there is none; with more than kMostFrameDigits it is no frame's.
+/// Of a name that has a number: where its last one lies, with its sign; the extension is left out, and so are numbers
+/// with a letter behind them ("1080p", "25fps"). `digits` is 0 where there is none; with more than kMostFrameDigits it is
+/// no frame's.
 struct FrameNumber {
   std::size_t begin = 0, end = 0;
   int digits = 0;

@@ -52,9 +52,12 @@ Rgb BloomThreshold::operator()(const Rgb& c) const {
   return c * (glm::max(s, b - t) / glm::max(b, 1e-5));
 }
 
-DoubleImage bloom_scaled(const DoubleImage& source, int height) {
-  const long long w = source.width, h = source.height;
-  const Size wanted{glm::max(1, static_cast<int>((2 * w * height + h) / (2 * h))), height};
+Size bloom_scaled_size(Size size, int height) {
+  const long long w = size.width, h = size.height;
+  return {glm::max(1, static_cast<int>((2 * w * height + h) / (2 * h))), height};
+}
+
+DoubleImage bloom_scaled(const DoubleImage& source, Size wanted) {
   const auto resized = [](const DoubleImage& from, Size size, int nx, int ny) {
     const double step_x = static_cast<double>(from.width) / size.width / nx;
     const double step_y = static_cast<double>(from.height) / size.height / ny;
@@ -85,8 +88,11 @@ DoubleImage bloom_prefilter(const DoubleImage& source, const BloomThreshold& thr
 }
 
 DoubleImage bloom_prefilter_fireflies(const DoubleImage& source, const BloomThreshold& threshold) {
+  return bloom_fade_fireflies(source, half(source.size()), threshold);
+}
+
+DoubleImage bloom_fade_fireflies(const DoubleImage& source, Size size, const BloomThreshold& threshold) {
   static constexpr int kOffsets[5][2] = {{0, 0}, {-2, -2}, {-2, 2}, {2, -2}, {2, 2}};
-  const Size size = half(source.size());
   return generate(size, [&](int x, int y) {
     Rgb sum(0);
     double weights = 0;
@@ -155,8 +161,9 @@ std::vector<Size> bloom_sizes(Size size, int max_iterations, int downscale_limit
 BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   BloomImages out;
   const DoubleImage glowing = map_color(source, [&](const Rgb& c) { return held(c, settings.clamp); });
-  const DoubleImage scaled = settings.reference_height > 0 ? bloom_scaled(glowing, settings.reference_height) : glowing;
-  const auto sizes = bloom_sizes(scaled.size(), settings.max_iterations, settings.downscale_limit);
+  const bool resized = settings.reference_height > 0;
+  const Size full = resized ? bloom_scaled_size(source.size(), settings.reference_height) : source.size();
+  const auto sizes = bloom_sizes(full, settings.max_iterations, settings.downscale_limit);
   if (sizes.empty() || settings.intensity <= 0) {
     out.result = source;
     return out;
@@ -164,8 +171,13 @@ BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   out.ran = true;
   auto threshold = BloomThreshold::from_gamma(settings.threshold, settings.knee);
   threshold.clamp = settings.clamp;
-  out.prefilter =
-      settings.fade_fireflies ? bloom_prefilter_fireflies(scaled, threshold) : bloom_prefilter(scaled, threshold);
+  if (settings.fade_fireflies && full.height > source.height) {
+    out.prefilter = bloom_scaled(bloom_fade_fireflies(glowing, source.size(), threshold), sizes.front());
+  } else {
+    const DoubleImage scaled = resized ? bloom_scaled(glowing, full) : glowing;
+    out.prefilter =
+        settings.fade_fireflies ? bloom_prefilter_fireflies(scaled, threshold) : bloom_prefilter(scaled, threshold);
+  }
 
   const std::size_t levels = sizes.size() - 1;
   for (std::size_t i = 0; i < levels; ++i) {

@@ -26,9 +26,11 @@ struct BloomSettings {
   Edges edges = Edges::stretch;
 };
 
-/// The picture as it would be at this height: halved while that leaves at least as much on both sides, then the mean of
+/// A picture's size if it were of this height.
+Size bloom_scaled_size(Size size, int height);
+/// The picture as it would be at this size: halved while that leaves at least as much on both sides, then the mean of
 /// bilinear reads at most half a texel apart over what is left.
-DoubleImage bloom_scaled(const DoubleImage& source, int height);
+DoubleImage bloom_scaled(const DoubleImage& source, Size wanted);
 
 /// The soft-knee threshold T(c) = c · max(s, b − t)/max(b, 1e-5), b the largest channel, s the quadratic knee between
 /// t(1−k) and t(1+k).
@@ -44,6 +46,8 @@ struct BloomThreshold {
 DoubleImage bloom_prefilter(const DoubleImage& source, const BloomThreshold& threshold);
 /// Half size; five thresholded samples on a diagonal cross, weighted by 1/(luminance + 1).
 DoubleImage bloom_prefilter_fireflies(const DoubleImage& source, const BloomThreshold& threshold);
+/// The same at another size; at the source's own, single pixels.
+DoubleImage bloom_fade_fireflies(const DoubleImage& source, Size size, const BloomThreshold& threshold);
 /// Halves both axes; Gaussian on x (9 samples, two texels apart).
 DoubleImage bloom_horizontal(const DoubleImage& source, Edges edges = Edges::stretch);
 /// Same size; Gaussian on y (5 samples between texels).

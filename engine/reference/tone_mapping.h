@@ -15,7 +15,7 @@ struct ToneMapping {
   double white = 8;         ///< reinhard_extended, hable: becomes 1
   bool full_white = false;  ///< aces, reinhard: light of 60 becomes 1
   AgxLook look = AgxLook::base;
-  double toe = 0.5, toe_length = 0.5, shoulder_length = 0.6, shoulder_angle = 0.2;  ///< hable
+  double toe = 0.25, toe_length = 0.5, shoulder_length = 0.6, shoulder_angle = 0.2;  ///< hable
 };
 
 /// The curves alone, without the clamp that the pass puts before them: to 60 in the first three, to 65504 in the

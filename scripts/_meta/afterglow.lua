@@ -101,7 +101,7 @@
 
 ---Colour fringes that grow towards the corners.
 ---@class afterglow.settings.chromatic_aberration : afterglow.EntryKeys
----@field intensity? number|afterglow.Moving  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
+---@field intensity? number|afterglow.Moving  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.1
 ---@field samples? integer|afterglow.Moving  3: three sharp pictures. 4 and more, all alike: a spectrum, even however long the fringes are. integer 3…24, default 6
 
 ---Exposure, contrast, colour filter, hue and saturation.
@@ -442,7 +442,7 @@
 ---@field white? number|afterglow.Moving  reinhard_extended, hable: the light that becomes white (hable: at least about 1). 0.5…1000, default 8
 ---@field full_white? boolean|afterglow.OfTime  aces, reinhard: their brightest white is 0.945 and 0.984 of the display's; this makes it 1. default false
 ---@field look? "base"|"punchy"|"golden"|afterglow.OfTime  agx: base as it is, punchy with more contrast and colour, golden warm and light. default "base"
----@field toe? number|afterglow.Moving  hable: how dark the darks get. 0: a straight line. 0…0.95, default 0.5
+---@field toe? number|afterglow.Moving  hable: how dark the darks get. 0: a straight line. 0…0.95, default 0.25
 ---@field toe_length? number|afterglow.Moving  hable: how much of the darks the toe takes. 0…1, default 0.5
 ---@field shoulder_length? number|afterglow.Moving  hable: how much of the display's range is left to the brights. 0…1, default 0.6
 ---@field shoulder_angle? number|afterglow.Moving  hable: above 0 the shoulder is still rising at white, as of film that has more to give. 0…1, default 0.2

@@ -160,7 +160,11 @@ return fx.effect {
     local start = preview and pyramids.start(sizes, source.width, source.height) or 1
     local image = source
     if s.clamp > 0 then image = g:pass { shader = "bloom/hold", source = image, most = most, name = "hold" } end
-    if start == 1 then
+    local enlarged = s.fade_fireflies and source.height < full_height
+    if enlarged then  -- once they are enlarged, single pixels are none any more
+      image = g:pass { shader = "bloom/fireflies", source = image, size = image, knee = knee, reach = 3, name = "fireflies" }
+      image = pyramids.resized(g, image, sizes[start][1], sizes[start][2], "scaled")
+    elseif start == 1 then
       image = pyramids.resized(g, image, full_width, full_height, "scaled")
       if s.fade_fireflies then
         image = g:pass { shader = "bloom/fireflies", source = image, size = sizes[1], knee = knee, reach = 3, name = "prefilter" }
@@ -170,7 +174,7 @@ return fx.effect {
     else
       image = pyramids.resized(g, image, sizes[start][1], sizes[start][2], "scaled")
     end
-    if not (start == 1 and s.fade_fireflies) then
+    if not enlarged and not (start == 1 and s.fade_fireflies) then
       image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }
     end
     local light = image

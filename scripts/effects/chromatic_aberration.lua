@@ -9,7 +9,7 @@ return fx.effect {
   doc = "Colour fringes that grow towards the corners.",
   at = "post_process", order = 140,
   settings = {
-    intensity = fx.float { min = 0, max = 1, default = 0.3, doc = "Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none." },
+    intensity = fx.float { min = 0, max = 1, default = 0.1, doc = "Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none." },
     samples = fx.int { min = 3, max = 24, default = 6, doc = "3: three sharp pictures. 4 and more, all alike: a spectrum, even however long the fringes are." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,

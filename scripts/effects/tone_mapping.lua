@@ -54,7 +54,7 @@ return fx.effect {
     white = fx.float { min = 0.5, max = 1000, default = 8, doc = "reinhard_extended, hable: the light that becomes white (hable: at least about 1)." },
     full_white = fx.bool { default = false, doc = "aces, reinhard: their brightest white is 0.945 and 0.984 of the display's; this makes it 1." },
     look = fx.enum { "base", "punchy", "golden", default = "base", doc = "agx: base as it is, punchy with more contrast and colour, golden warm and light." },
-    toe = fx.float { min = 0, max = 0.95, default = 0.5, doc = "hable: how dark the darks get. 0: a straight line." },
+    toe = fx.float { min = 0, max = 0.95, default = 0.25, doc = "hable: how dark the darks get. 0: a straight line." },
     toe_length = fx.float { min = 0, max = 1, default = 0.5, doc = "hable: how much of the darks the toe takes." },
     shoulder_length = fx.float { min = 0, max = 1, default = 0.6, doc = "hable: how much of the display's range is left to the brights." },
     shoulder_angle = fx.float { min = 0, max = 1, default = 0.2, doc = "hable: above 0 the shoulder is still rising at white, as of film that has more to give." },

@@ -8,9 +8,10 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "my_look",
+  reference_height = 1080,  -- settings in px are those of a picture of 1080 lines: the same look at every size
 
   -- Scene light: as bright as in the scene, without an upper end.
-  fx.bloom { mode = "scattering", threshold = 1, intensity = 0.15, scatter = 0.7 },
+  fx.bloom { mode = "scattering", threshold = 1, intensity = 0.15, scatter = 0.7, edges = "mirror", fade_fireflies = true },
   fx.vignette { intensity = 0.25 },
   fx.white_balance { temperature = 5 },
   fx.color_adjustments { post_exposure = 0, contrast = 5, saturation = 5 },

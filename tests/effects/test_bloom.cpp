@@ -28,23 +28,41 @@ std::vector<float> interleaved_floats(const DoubleImage& image) {
   return {doubles.begin(), doubles.end()};
 }
 
+/// The image of the light that blooms, at half of the size that the glow is made at.
+std::string light_of(const Made& made) {
+  if (!made.has("bloom.fireflies")) return "bloom.prefilter";
+  std::string light = "bloom.fireflies";  // of a picture that is enlarged
+  for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) light = bloom_image("scaled", i);
+  return light;
+}
+
 /// Each pass on what the device itself gave to it.
 void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& s) {
   auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
   threshold.clamp = s.clamp;
   DoubleImage picture = made.has("bloom.hold") ? made.image("bloom.hold") : scene.source;
-  for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) picture = made.image(bloom_image("scaled", i));
-  if (s.reference_height > 0) {
-    EXPECT_TRUE(agrees(interleaved_floats(picture), bloom_scaled(scene.source, s.reference_height), kFullFloat, kRgb))
+  const Size full = s.reference_height > 0 ? bloom_scaled_size(picture.size(), s.reference_height) : picture.size();
+  const std::string light = light_of(made);
+  if (made.has("bloom.fireflies")) {
+    EXPECT_TRUE(agrees(made.pixels("bloom.fireflies"), bloom_fade_fireflies(picture, picture.size(), threshold),
+                       kFullFloat, kRgb))
+        << "fireflies";
+    EXPECT_TRUE(agrees(made.pixels(light),
+                       bloom_scaled(made.image("bloom.fireflies"), {full.width / 2, full.height / 2}), kFullFloat,
+                       kRgb))
         << "scaled";
+  } else {
+    const DoubleImage scaled = bloom_scaled(picture, full);
+    for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) picture = made.image(bloom_image("scaled", i));
+    EXPECT_TRUE(agrees(interleaved_floats(picture), scaled, kFullFloat, kRgb)) << "scaled";
+    EXPECT_TRUE(
+        agrees(made.pixels(light),
+               s.fade_fireflies ? bloom_prefilter_fireflies(picture, threshold) : bloom_prefilter(picture, threshold),
+               kFullFloat, kRgb))
+        << "prefilter";
   }
-  EXPECT_TRUE(
-      agrees(made.pixels("bloom.prefilter"),
-             s.fade_fireflies ? bloom_prefilter_fireflies(picture, threshold) : bloom_prefilter(picture, threshold),
-             kFullFloat, kRgb))
-      << "prefilter";
   std::size_t levels = 0;
-  for (std::string before = "bloom.prefilter"; made.has(bloom_image("vertical", levels));
+  for (std::string before = light; made.has(bloom_image("vertical", levels));
        before = bloom_image("vertical", levels++)) {
     EXPECT_TRUE(agrees(made.pixels(bloom_image("horizontal", levels)), bloom_horizontal(made.image(before), s.edges),
                        kFullFloat, kRgb))
@@ -76,7 +94,7 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
 
 /// Every image of the device against that of the oracle's own pyramid.
 void check_end_to_end(const Made& made, const BloomImages& expected) {
-  EXPECT_TRUE(agrees(made.pixels("bloom.prefilter"), expected.prefilter, kFullFloat, kRgb));
+  EXPECT_TRUE(agrees(made.pixels(light_of(made)), expected.prefilter, kFullFloat, kRgb));
   for (std::size_t i = 0; i < expected.vertical.size(); ++i) {
     EXPECT_TRUE(agrees(made.pixels(bloom_image("horizontal", i)), expected.horizontal[i], kFullFloat, kRgb))
         << "horizontal " << i;
@@ -176,6 +194,21 @@ TEST_F(Effects, BloomAtAReferenceHeightAgrees) {
       check(random_scene({240, 135}, 11, true), {.fade_fireflies = fireflies, .reference_height = height});
   check(random_scene({101, 57}, 12), {.mode = BloomMode::scattering, .downscale_limit = 1, .reference_height = 20});
   check(random_scene({51, 108}, 13), {.downscale_limit = 1, .reference_height = 54});  // half as high, to an odd width
+}
+
+/// Of a picture that is smaller than the stack's, single pixels are not enlarged before they are looked for.
+TEST_F(Effects, BloomFadesFirefliesOfSmallPictures) {
+  for (const int side : {1, 2}) {
+    Scene scene{"firefly", DoubleImage(256, 144, Rgba(0.05, 0.05, 0.05, 1)), {}, {}};
+    for (int i = 0; i < side * side; ++i) scene.source.at(128 + i % side, 72 + i / side) = Rgba(3000, 3000, 3000, 1);
+    const auto glow = [&](const char* fading) {
+      const auto made = run_stack(fmt::format("fx.bloom {{ mode = \"scattering\", reference_height = 432{} }}", fading),
+                                  scene, Way::fused);
+      return made.result[4 * (std::size_t{256} * 72 + 140)] - 0.05f;
+    };
+    EXPECT_GT(glow(""), 0.1f);
+    EXPECT_LT(glow(", fade_fireflies = true"), 1e-3f);
+  }
 }
 
 TEST_F(Effects, BloomHoldsWildPixels) {

@@ -87,12 +87,15 @@ TEST(Pattern, PlainFilesHaveTheirOwnNumber) {
   EXPECT_EQ(find_frames({"a/2026-11-02.exr", "", 0, false}, std::nullopt).value()[0].frame, 2);
   EXPECT_EQ(find_frames({"a/20261121000000000000.exr", "", 0, false}, std::nullopt).value()[0].frame, 1);
   EXPECT_EQ(find_frames({"a/shot.0012_beauty.exr", "", 0, false}, std::nullopt).value()[0].frame, 12);
+  EXPECT_EQ(find_frames({"a/hero_1080p.exr", "", 0, false}, std::nullopt).value()[0].frame, 1);
+  EXPECT_EQ(find_frames({"a/shot_0012_1080p.exr", "", 0, false}, std::nullopt).value()[0].frame, 12);
 }
 
 TEST(Pattern, FramesOfASequenceDifferInTheirNumberAlone) {
   EXPECT_EQ(without_frame_number("a/shot.0012.exr"), "a/shot.*.exr");
   EXPECT_EQ(without_frame_number("a/shot.-002.exr"), "a/shot.*.exr");
   EXPECT_EQ(without_frame_number("a/shot.0012_beauty.exr"), "a/shot.*_beauty.exr");
+  EXPECT_EQ(without_frame_number("a/shot_0012_4k.exr"), "a/shot_*_4k.exr");
   EXPECT_EQ(without_frame_number("a1/still.exr"), "a1/still.exr");
   EXPECT_EQ(without_frame_number("20261121000000000000.exr"), "20261121000000000000.exr");
 }
