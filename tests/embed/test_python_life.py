@@ -123,6 +123,23 @@ def test_a_stack_may_go_on_its_own_thread(folder, device):
     assert gone.wait(60)
 
 
+def test_what_was_never_made_is_refused(device):
+    stack, other = afterglow.Stack.__new__(afterglow.Stack), afterglow.Device.__new__(afterglow.Device)
+    for call in (
+        lambda: stack.run(np.zeros((1, 1, 3), np.float32)),
+        lambda: stack.settings,
+        lambda: stack.set("gain.amount", 1),
+        lambda: stack.close(),
+        lambda: stack.__exit__(),
+        lambda: other.describe(),
+        lambda: other.close(),
+        lambda: afterglow.Stack("neon_night", device=other),
+    ):
+        for _ in range(2):  # asking does not make it
+            with pytest.raises(TypeError, match=r"(Stack|Device).__init__\(\) (has not been|must be) called"):
+                call()
+
+
 def test_closing(folder, device):
     told = []
     with afterglow.Stack(folder / "look.lua", device=device, follow=True, message=lambda *what: told.append(what)) as stack:

@@ -4,6 +4,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 namespace afterglow::python {
 
 namespace py = pybind11;
@@ -16,6 +18,17 @@ T* made(PyObject* self) {
   auto place = instance->get_value_and_holder(py::detail::get_type_info(typeid(T)), false);
   return place.inst && place.holder_constructed() ? place.template value_ptr<T>() : nullptr;
 }
+
+/// Of T as an argument. Refuses objects whose __init__ has not run: pybind11 hands out memory that nobody has filled.
+template <class T>
+struct MadeCaster : py::detail::type_caster_base<T> {
+  bool load(py::handle source, bool convert) {
+    if (py::isinstance<T>(source) && !made<T>(source.ptr()))
+      throw py::type_error(py::type::of(source).attr("__name__").template cast<std::string>() +
+                           ".__init__() has not been called");
+    return py::detail::type_caster_base<T>::load(source, convert);
+  }
+};
 
 /// For a class_ of T, which has `int visit(visitproc, void*) const` over the Python objects that it holds, each once,
 /// and `void clear()` that lets go of them.

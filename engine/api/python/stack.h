@@ -10,6 +10,7 @@
 
 #include "arrays.h"
 #include "callback.h"
+#include "collect.h"
 
 namespace afterglow::python {
 
@@ -71,3 +72,10 @@ class PyStack {
 };
 
 }  // namespace afterglow::python
+
+template <>
+struct pybind11::detail::type_caster<afterglow::python::PyDevice>
+    : afterglow::python::MadeCaster<afterglow::python::PyDevice> {};
+template <>
+struct pybind11::detail::type_caster<afterglow::python::PyStack>
+    : afterglow::python::MadeCaster<afterglow::python::PyStack> {};
