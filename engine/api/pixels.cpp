@@ -71,11 +71,14 @@ void add_alpha(float* row, int width) {
   }
 }
 
+/// As OpenImageIO makes it of files: a product, which is not always the quotient's float.
+float alpha_of(std::uint8_t code) { return static_cast<float>(code) * (1.0f / 255.0f); }
+
 void decode_codes(const Pixels& p, int y, float* row) {
   static const std::vector<float> linear = srgb_decode_table(255);
   for (int x = 0; x < p.size.width; ++x, row += 4) {
     const auto* codes = reinterpret_cast<const std::uint8_t*>(p.at(x, y));
-    const float alpha = p.channels == 4 ? static_cast<float>(codes[3]) / 255.0f : 1.0f;
+    const float alpha = p.channels == 4 ? alpha_of(codes[3]) : 1.0f;
     for (int c = 0; c < 3; ++c) row[c] = linear[codes[c]] * alpha;
     row[3] = alpha;
   }
@@ -112,7 +115,7 @@ void read_auxiliary(const Pixels& p, ImageRole role, int y, float* row, Mended& 
 float alpha_at(const Pixels& p, int x, int y) {
   if (p.channels < 4) return 1;
   const std::byte* pixel = p.at(x, y);
-  if (p.samples == AFTERGLOW_UINT8) return static_cast<float>(std::to_integer<unsigned>(pixel[3])) / 255.0f;
+  if (p.samples == AFTERGLOW_UINT8) return alpha_of(std::to_integer<std::uint8_t>(pixel[3]));
   float alpha;
   if (p.samples == AFTERGLOW_HALF) {
     std::uint16_t half;

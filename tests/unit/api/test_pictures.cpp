@@ -7,7 +7,8 @@
 
 #include "core/half.h"
 #include "fixture.h"
-#include "image/color_encoding.h"
+#include "image/reader.h"
+#include "image/writer.h"
 #include "session/session.h"
 
 namespace afterglow::test {
@@ -168,11 +169,16 @@ TEST_F(PictureTest, HalvesAreReadAndWritten) {
 TEST_F(PictureTest, CodesAreThoseOfAFile) {
   std::vector<std::uint8_t> codes(static_cast<std::size_t>(kWidth) * kHeight * 4), result(codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = static_cast<std::uint8_t>(i * 7 % 256);
-  Image read(kWidth, kHeight, 4);
-  for (std::size_t i = 0; i < codes.size(); ++i) read.pixels[i] = static_cast<float>(codes[i]) / 255.0f;
-  SanitizeCounts counts;
-  decode_color({.curve = TransferCurve::srgb, .alpha = AlphaKind::straight, .max_code = 255}, read, counts);
-  const Picture wanted = expected(read.pixels, DisplayEncoding{.straight_alpha = true});
+  Picture written;
+  written.color = Image(kWidth, kHeight, 4);
+  written.unorm8.assign(codes.begin(), codes.end());
+  written.has_alpha = true;
+  written.data_window = written.display_window = {0, 0, kWidth, kHeight};
+  Diagnostics diagnostics;
+  ASSERT_TRUE(write_picture(written, file("codes.png"), {}, diagnostics));
+  const auto read = read_picture(file("codes.png"), {}, diagnostics);
+  ASSERT_TRUE(read) << read.error().text();
+  const Picture wanted = expected(read->color.pixels, DisplayEncoding{.straight_alpha = true});
   ASSERT_FALSE(wanted.unorm8.empty());
   const StackPtr stack = this->stack();
   run(stack, {codes.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0},
@@ -180,7 +186,7 @@ TEST_F(PictureTest, CodesAreThoseOfAFile) {
   EXPECT_TRUE(std::ranges::equal(result, wanted.unorm8));
 
   // To floats, and in three channels.
-  const Picture linear = expected(read.pixels);
+  const Picture linear = expected(read->color.pixels);
   std::vector<float> floats(codes.size());
   run(stack, {codes.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0}, image(floats, kWidth, kHeight));
   EXPECT_EQ(floats, linear.color.pixels);
