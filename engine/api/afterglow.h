@@ -309,10 +309,13 @@ typedef enum afterglow_samples {
   AFTERGLOW_UINT8 = 2  /* sRGB codes, alpha straight: read so, decoded and premultiplied; a result is encoded so */
 } afterglow_samples;
 
+/* Of a picture, in pixels; the least is 1. */
+#define AFTERGLOW_LARGEST_SIDE 16384
+
 /* Pixels of the caller. Channels lie next to each other. */
 typedef struct afterglow_image {
   void *data;            /* the upper left pixel; NULL: no image. Sources are only read */
-  int32_t width, height; /* 1 to 16384 */
+  int32_t width, height; /* 1 to AFTERGLOW_LARGEST_SIDE */
   int32_t channels;      /* colour: 3 (alpha is 1) or 4; depth 1, normal 3 or 4, motion 2 to 4 (the last ones unused) */
   afterglow_samples samples;
   ptrdiff_t row_stride;   /* bytes from one row to the next, may be negative; 0: rows without gaps */
@@ -353,7 +356,7 @@ AFTERGLOW_API afterglow_error *afterglow_stack_run(afterglow_stack *stack, const
 
 typedef struct afterglow_shape {
   size_t struct_size;
-  int32_t width, height;      /* of the source; 1 to 16384 */
+  int32_t width, height;      /* of the source; 1 to AFTERGLOW_LARGEST_SIDE */
   bool depth, normal, motion; /* what comes with it */
   bool display_codes;         /* the result will be 8-bit: sRGB codes (not with `reference`, which makes floats) */
   bool straight_alpha;        /* with `display_codes`: colours are divided by the source's alpha, which is stored */

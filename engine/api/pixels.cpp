@@ -14,7 +14,7 @@
 #include "gpu/image.h"
 #include "image/encode.h"
 #include "image/picture.h"
-#include "image/reader.h"
+#include "image/size_limits.h"
 #include "image/srgb.h"
 
 namespace afterglow::api {
@@ -202,7 +202,8 @@ std::uint64_t write_row(const ResultRules& rules, int x, int y, int width, VkFor
 }  // namespace
 
 Result<void> check_size(Size size) {
-  const int most = ReadOptions().max_side;
+  constexpr int most = AFTERGLOW_LARGEST_SIDE;
+  static_assert(most == SizeLimits().max_side, "afterglow.h says another largest side than files may have");
   if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= most) return {};
   return usage(fmt::format("{}×{} pixels; sides go from 1 to {}", size.width, size.height, most));
 }

@@ -16,6 +16,7 @@
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "image/picture.h"
+#include "image/size_limits.h"
 
 namespace afterglow {
 
@@ -79,7 +80,7 @@ struct ReadOptions {
   std::vector<std::string>
       auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: a picture with values that are not finite is an error (io)
-  int max_side = 16384;                    ///< larger sides are refused from the header
+  int max_side = SizeLimits().max_side;    ///< larger sides are refused from the header
   /// Colours that a file holds as half floats, and that need no more than to be held at 0, may stay so
   /// (Picture::halves).
   bool halves = false;

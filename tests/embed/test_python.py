@@ -230,6 +230,18 @@ def test_numbers_that_may_be_codes_are_no_light(stack, device):
         outline.run(source, depth=depth.astype(np.complex64))
 
 
+def test_masks_are_not_lost_silently(stack, device):
+    masked = np.ma.masked_less(picture(), 0.5)
+    for call, name in (
+        (lambda: stack.run(masked), "source"),
+        (lambda: stack.run(picture(), depth=masked[..., 0]), "depth"),
+        (lambda: stack.run(picture(), out=masked), "out"),
+    ):
+        with pytest.raises(TypeError, match=r"%s is a masked array; give its values: %s.filled\(0\)" % (name, name)):
+            call()
+    np.testing.assert_array_equal(stack.run(masked.data), stack.run(picture()))
+
+
 def test_pictures_that_do_not_fit_are_usage_errors(stack):
     for shape in ((4, 4), (4, 4, 5), (3, 4, 40), (4,), (2, 3, 4, 4)):
         with pytest.raises(afterglow.UsageError, match="shape is"):

@@ -33,13 +33,19 @@ bool is_readable(const py::array& array) {
 
 /// Before anything is copied: views of one sample may be of any size.
 void check_shape(const py::array& array, const char* name) {
-  constexpr py::ssize_t kMostSide = 16384;
   if (array.ndim() < 2 || array.ndim() > 3 || (array.ndim() == 3 && array.shape(2) > 4))
     refuse(std::string(name) + ": the shape is " + shape_text(array) +
            "; allowed: (height, width, channels), with channels next to each other, 4 at most");
-  if (std::max(array.shape(0), array.shape(1)) > kMostSide)
+  if (std::max(array.shape(0), array.shape(1)) > AFTERGLOW_LARGEST_SIDE)
     refuse(std::string(name) + ": the shape is " + shape_text(array) + "; sides go from 1 to " +
-           std::to_string(kMostSide));
+           std::to_string(AFTERGLOW_LARGEST_SIDE));
+}
+
+/// What is below the mask would count.
+void refuse_mask(const py::handle& array, const char* name) {
+  if (!py::isinstance(array, py::module_::import("numpy.ma").attr("MaskedArray"))) return;
+  const std::string text(name);
+  throw py::type_error(text + " is a masked array; give its values: " + text + ".filled(0), or " + text + ".data");
 }
 
 afterglow_image image_of(py::array& array, const char* name) {
@@ -59,6 +65,7 @@ afterglow_image image_of(py::array& array, const char* name) {
 }  // namespace
 
 Picture input(const py::object& given, const char* name, bool may_be_flat) {
+  refuse_mask(given, name);
   py::array array = py::module_::import("numpy").attr("asarray")(given);
   if (array.dtype().kind() == 'O') refuse(std::string(name) + " is no array of numbers");
   if (may_be_flat ? !is_number(array.dtype()) : !may_be_light(array.dtype()))
@@ -91,6 +98,7 @@ void keep_apart(std::vector<Picture>& sources, const Picture& result) {
 
 Picture output(const py::object& given) {
   if (!py::isinstance<py::array>(given)) refuse("out is no numpy array");
+  refuse_mask(given, "out");
   auto array = py::reinterpret_borrow<py::array>(given);
   if (!array.writeable()) refuse("out is read-only");
   if (!is_known(array.dtype())) refuse("out must be of float32, float16 or uint8");
