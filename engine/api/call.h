@@ -59,9 +59,12 @@ inline std::string text_of(afterglow_string text) {
   return text.data ? std::string(text.data, text.size) : std::string();
 }
 
-/// A path of the caller's, absolute: a host may change its working directory later. Empty: none is given.
-inline std::filesystem::path path_of(afterglow_string text) {
+/// A path of the caller's, absolute: a host may change its working directory later. Empty: none is given. Errors
+/// (usage): a NUL in it, where the system would end it.
+inline Result<std::filesystem::path> path_of(afterglow_string text) {
   std::filesystem::path given = text_of(text);
+  if (given.native().find('\0') != std::string::npos)
+    return usage("embedded NUL in the name of a file: " + given.native());
   std::error_code unknown;
   std::filesystem::path absolute = given.empty() ? given : std::filesystem::absolute(given, unknown);
   return unknown ? given : absolute;

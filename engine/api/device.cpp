@@ -31,11 +31,12 @@ afterglow_error* afterglow_device_open(const afterglow_device_options* options, 
     if (options) {
       AFTERGLOW_TRY(given, take(options, given, "afterglow_device_options"));
     }
+    AFTERGLOW_TRY(const auto cache_folder, path_of(given.cache_folder));
     DeviceOptions wanted;
     if (is_given(given.device)) wanted.device = text_of(given.device);
     wanted.validate = given.validate;
     return make(given.message, given.user, out,
-                [&](SharedDevice& device) { return device.open(wanted, path_of(given.cache_folder)); });
+                [&](SharedDevice& device) { return device.open(wanted, cache_folder); });
   });
 }
 
@@ -50,6 +51,7 @@ afterglow_error* afterglow_device_adopt(const afterglow_adopted_device* adopted,
                                                     {"queue", !given.queue}};
     for (const auto& [name, is_missing] : missing)
       if (is_missing) return usage(fmt::format("afterglow_adopted_device: {} is NULL", name));
+    AFTERGLOW_TRY(const auto cache_folder, path_of(given.cache_folder));
     const AdoptedDevice objects{.instance = given.instance,
                                 .physical_device = given.physical_device,
                                 .device = given.device,
@@ -57,7 +59,7 @@ afterglow_error* afterglow_device_adopt(const afterglow_adopted_device* adopted,
                                 .queue_family = given.queue_family,
                                 .get_instance_proc_addr = given.get_instance_proc_addr};
     return make(given.message, given.user, out,
-                [&](SharedDevice& device) { return device.adopt(objects, path_of(given.cache_folder)); });
+                [&](SharedDevice& device) { return device.adopt(objects, cache_folder); });
   });
 }
 

@@ -78,19 +78,22 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
   if (!(given.max_error >= 0)) return usage("afterglow_stack_options: max_error must not be negative");
 
   BackendOptions out;
-  for (std::size_t i = 0; i < given.path_count; ++i) out.stack.preset.paths.push_back(path_of(given.paths[i]));
+  for (std::size_t i = 0; i < given.path_count; ++i) {
+    AFTERGLOW_TRY(out.stack.preset.paths.emplace_back(), path_of(given.paths[i]));
+  }
   for (std::size_t i = 0; i < given.argument_count; ++i) {
     AFTERGLOW_TRY(out.stack.preset.arguments.emplace_back(), parse_argument(text_of(given.arguments[i])));
   }
-  out.stack.preset.installation = path_of(given.installation);
+  AFTERGLOW_TRY(out.stack.preset.installation, path_of(given.installation));
+  AFTERGLOW_TRY(const auto named, path_of(given.preset_file));
   if (is_given(given.preset_text)) {
     out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";
-    if (out.preset.has_parent_path()) out.preset = path_of(given.preset_file);  // else a name for messages alone
+    if (out.preset.has_parent_path()) out.preset = named;  // else a name for messages alone
     out.stack.preset.text = text_of(given.preset_text);
   } else {
     AFTERGLOW_TRY(const std::filesystem::path found,
                   find_preset_file(text_of(given.preset_file), out.stack.preset.paths, out.stack.preset.installation));
-    out.preset = path_of(view(found.string()));
+    AFTERGLOW_TRY(out.preset, path_of(view(found.string())));
   }
   switch (given.precision) {
     case AFTERGLOW_PRECISION_AUTOMATIC:
@@ -108,7 +111,7 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
     return usage("afterglow_stack_options: unknown use");
   if (given.max_error > 0) out.stack.max_error = given.max_error;
   if (given.max_memory > 0) out.stack.max_memory = given.max_memory;
-  out.stack.calibration = path_of(given.calibration);
+  AFTERGLOW_TRY(out.stack.calibration, path_of(given.calibration));
   out.stack.reference = given.reference;
   out.commands = given.use == AFTERGLOW_USE_COMMANDS;
   out.follow = given.follow;

@@ -106,6 +106,9 @@ Result<SettingValue> parse_value_of(const std::string& text, const SettingSchema
     value.text = text;
   }
   if (schema.type == SettingType::file) {
+    if (text.find('\0') != std::string::npos)
+      return Error{ErrorKind::usage,
+                   fmt::format("{} = {}: embedded NUL in the name of a file", full_name, value.shown())};
     if (any_file)
       if (auto file = named_file(text, schema)) return *file;
     value.text = value.kind == Value::Kind::text ? value.text : trim(text);

@@ -220,6 +220,17 @@ def test_names_of_files_are_any_bytes(folder, device):
     assert "caf\ufffd" in str(caught.value)
 
 
+def test_names_of_files_have_no_nul_in_them(folder, device):
+    cut = str(folder / "look.lua") + "\0x"
+    for call in (
+        lambda: afterglow.Stack(cut, device=device),
+        lambda: afterglow.Stack(folder / "look.lua", device=device, paths=[cut]),
+        lambda: afterglow.Device(cache=cut),
+    ):
+        with pytest.raises(ValueError, match="embedded NUL in the name of a file"):
+            call()
+
+
 def test_paths_are_one_or_some(folder, device, tmp_path_factory):
     elsewhere = tmp_path_factory.mktemp("elsewhere") / "look.lua"
     elsewhere.write_text(look("fx.gain { amount = 5 }"))

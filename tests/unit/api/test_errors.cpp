@@ -41,6 +41,38 @@ TEST_F(ErrorTest, NothingIsNoError) {
   EXPECT_FALSE(afterglow_stack_runs(nullptr));
 }
 
+/// The system would end the name there, and take another file.
+TEST_F(ErrorTest, NamesOfFilesHaveNoNulInThem) {
+  const auto refused = [](afterglow_error* given) {
+    const ErrorPtr error(given);
+    return afterglow_error_get_kind(error.get()) == AFTERGLOW_ERROR_USAGE &&
+           text_of(error.get()).find("embedded NUL in the name of a file") != std::string::npos;
+  };
+  write("table.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
+  using Options = afterglow_stack_options;
+  const std::string name = file("look.lua") + '\0' + "x";
+  const afterglow_string nul = str(name);
+  for (const auto member : {&Options::preset_file, &Options::installation, &Options::calibration}) {
+    Options options = afterglow_stack_options_default();
+    options.preset_file = str("neon_night");
+    options.*member = nul;
+    EXPECT_TRUE(refused(broken(options).release()));
+  }
+  Options options = afterglow_stack_options_default();
+  options.paths = &nul;
+  options.path_count = 1;
+  EXPECT_TRUE(refused(broken(options).release()));
+  afterglow_device_options device = afterglow_device_options_default();
+  device.cache_folder = nul;
+  afterglow_device* opened = nullptr;
+  EXPECT_TRUE(refused(afterglow_device_open(&device, &opened)));
+
+  look("fx.lut {}");
+  const StackPtr stack = this->stack();
+  ASSERT_TRUE(fine(afterglow_stack_set(stack.get(), str("lut.file"), str(file("table.cube")))));
+  EXPECT_TRUE(refused(afterglow_stack_set(stack.get(), str("lut.file"), str(file("table.cube") + '\0' + ".cube"))));
+}
+
 TEST_F(ErrorTest, MissingArgumentsAreUsageErrors) {
   const StackPtr stack = this->stack();
   afterglow_stack_options options = afterglow_stack_options_default();
