@@ -247,6 +247,10 @@ AFTERGLOW_API afterglow_error *afterglow_stack_set_text(afterglow_stack *stack, 
                                                         afterglow_string value);
 AFTERGLOW_API afterglow_error *afterglow_stack_set_numbers(afterglow_stack *stack, afterglow_string name,
                                                            const double *values, size_t count);
+/* Several at once, all or none: names[i] gets values[i], a text as afterglow_stack_set takes. The preset runs once for
+ * all of them. Where a name occurs twice, the later value counts. Errors: as afterglow_stack_set. */
+AFTERGLOW_API afterglow_error *afterglow_stack_set_several(afterglow_stack *stack, const afterglow_string *names,
+                                                           const afterglow_string *values, size_t count);
 /* Back to what the preset says. A name that was not set is no error; a name that is not given means all. Errors:
  * usage (an empty name), script. */
 AFTERGLOW_API afterglow_error *afterglow_stack_unset(afterglow_stack *stack, afterglow_string name);

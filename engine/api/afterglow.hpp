@@ -238,6 +238,15 @@ class Stack {
   void set(std::string_view name, const std::vector<double>& values) {
     check(afterglow_stack_set_numbers(get(), to_view(name), values.data(), values.size()));
   }
+  /// Names and values as text, all or none.
+  void set(const std::vector<std::pair<std::string, std::string>>& several) {
+    std::vector<afterglow_string> names, values;
+    for (const auto& [name, value] : several) {
+      names.push_back(to_view(name));
+      values.push_back(to_view(value));
+    }
+    check(afterglow_stack_set_several(get(), names.data(), values.data(), several.size()));
+  }
   void unset(std::string_view name) { check(afterglow_stack_unset(get(), to_view(name))); }
   void unset_all() { check(afterglow_stack_unset(get(), afterglow_str(nullptr))); }
 

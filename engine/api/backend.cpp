@@ -68,18 +68,21 @@ class Backend::Forgetting {
   const Stack* before_;
 };
 
-Result<void> Backend::set(const Override& one) {
+Result<void> Backend::set(const std::vector<Override>& several) {
   Given all = given_;
-  std::erase_if(all.overrides, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
-  all.overrides.push_back(one);
-  return set_all(std::move(all), MustFit::last_override);
+  std::erase_if(all.overrides, [&](const Override& before) {
+    return std::ranges::any_of(
+        several, [&](const Override& now) { return now.entry == before.entry && now.setting == before.setting; });
+  });
+  all.overrides.insert(all.overrides.end(), several.begin(), several.end());
+  return set_all(std::move(all), {.overrides = several.size()});
 }
 
 Result<void> Backend::unset(const std::optional<std::string>& name) {
   Given all = given_;
   if (std::erase_if(all.overrides, [&](const Override& o) { return !name || o.entry + "." + o.setting == *name; }) == 0)
     return {};
-  return set_all(std::move(all), MustFit::nothing);
+  return set_all(std::move(all), {});
 }
 
 Result<void> Backend::set_argument(const std::string& name, const std::optional<std::string>& value) {
@@ -87,7 +90,7 @@ Result<void> Backend::set_argument(const std::string& name, const std::optional<
   const auto gone = std::erase_if(all.arguments, [&](const ArgumentValue& a) { return a.name == name; });
   if (value) all.arguments.push_back({name, *value});
   if (!value && gone == 0) return {};
-  return set_all(std::move(all), value ? MustFit::last_argument : MustFit::nothing);
+  return set_all(std::move(all), {.arguments = value ? 1u : 0u});
 }
 
 Result<void> Backend::set_all(Given all, MustFit must_fit) {

@@ -112,8 +112,8 @@ class Backend {
   /// Of the same frame: how many earlier frames it needs. 0 before there is one.
   int pre_roll() const;
 
-  /// One more override; one of the same name goes. Errors: usage, script: then the ones before stay.
-  Result<void> set(const Override& one);
+  /// Further overrides; those of the same names go. Errors: usage, script: then the ones before stay.
+  Result<void> set(const std::vector<Override>& several);
   Result<void> unset(const std::optional<std::string>& name);  ///< none: all
   /// No value: its default.
   Result<void> set_argument(const std::string& name, const std::optional<std::string>& value);

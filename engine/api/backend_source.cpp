@@ -70,7 +70,7 @@ class Loaded : public Source {
     stack_ = std::move(later);
     options_.stack = wanted;
     options_.stack.preset.leave_out_unfit = true;  // the preset may come to be another one
-    options_.stack.preset.must_fit = MustFit::nothing;
+    options_.stack.preset.must_fit = {};
     return {};
   }
 
@@ -182,7 +182,7 @@ class Followed : public Source {
     PresetOptions alone = options_.stack.preset;
     alone.overrides = {};
     alone.leave_out_unfit = true;
-    alone.must_fit = MustFit::nothing;
+    alone.must_fit = {};
     const auto opens = attempt(alone);
     return !opens && opens.error().text() == error.text();
   }

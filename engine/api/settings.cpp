@@ -25,7 +25,7 @@ Result<Override> override_of(afterglow_string name, const std::string& value) {
 Result<void> set(afterglow_stack* stack, const char* function, afterglow_string name, const std::string& value) {
   AFTERGLOW_TRY(Backend * backend, backend_of(stack, function));
   AFTERGLOW_TRY(const Override one, override_of(name, value));
-  return backend->set(one);
+  return backend->set({one});
 }
 
 Result<std::string> number(double value) {
@@ -105,6 +105,19 @@ afterglow_error* afterglow_stack_set_numbers(afterglow_stack* stack, afterglow_s
       texts.push_back(std::move(text));
     }
     return set(stack, "afterglow_stack_set_numbers", name, count == 1 ? texts[0] : "{" + join(texts) + "}");
+  });
+}
+
+afterglow_error* afterglow_stack_set_several(afterglow_stack* stack, const afterglow_string* names,
+                                             const afterglow_string* values, size_t count) {
+  return call([&]() -> Result<void> {
+    AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_set_several"));
+    if (count > 0 && (!names || !values)) return usage("afterglow_stack_set_several: names or values is NULL");
+    std::vector<Override> several;
+    for (std::size_t i = 0; i < count; ++i) {
+      AFTERGLOW_TRY(several.emplace_back(), override_of(names[i], text_of(values[i])));
+    }
+    return backend->set(several);
   });
 }
 

@@ -31,7 +31,9 @@ constexpr std::size_t kMaxArguments = 256;
 
 /// `given` is one of Runtime::given_arguments.
 void fail_or_leave_out(const Runtime& runtime, const ArgumentValue& given, const Error& error) {
-  const bool must_fit = runtime.last_argument_must_fit && &given == &runtime.given_arguments.back();
+  const auto& all = runtime.given_arguments;
+  const bool must_fit =
+      all.data() + all.size() - &given <= static_cast<std::ptrdiff_t>(runtime.arguments_that_must_fit);
   if (!runtime.leave_out_unfit || must_fit || !runtime.box->diagnostics) throw ScriptError{error};
   warn_left_out(*runtime.box->diagnostics, error);
 }

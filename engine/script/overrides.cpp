@@ -219,11 +219,11 @@ void warn_left_out(Diagnostics& diagnostics, Error error) {
 }
 
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             Runtime& runtime, Diagnostics* left_out, bool last_must_fit) {
-  for (const auto& given : overrides) {
-    auto applied = apply_everywhere(entries, given, runtime);
+                             Runtime& runtime, Diagnostics* left_out, std::size_t must_fit) {
+  for (std::size_t i = 0; i < overrides.size(); ++i) {
+    auto applied = apply_everywhere(entries, overrides[i], runtime);
     if (applied) continue;
-    if (!left_out || (last_must_fit && &given == &overrides.back())) return applied;
+    if (!left_out || overrides.size() - i <= must_fit) return applied;
     warn_left_out(*left_out, std::move(applied).error());
   }
   return {};

@@ -10,9 +10,9 @@
 namespace afterglow::script {
 
 /// Errors (usage): unknown entry or setting (with the nearest), values that the setting does not allow. With
-/// `left_out` they are its warnings, and what they are about is left out, but for the last one if that must fit.
+/// `left_out` they are its warnings, and what they are about is left out, but for the last `must_fit` ones.
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             Runtime& runtime, Diagnostics* left_out = nullptr, bool last_must_fit = false);
+                             Runtime& runtime, Diagnostics* left_out = nullptr, std::size_t must_fit = 0);
 
 /// The warning that something from the command line is left out; once.
 void warn_left_out(Diagnostics& diagnostics, Error error);

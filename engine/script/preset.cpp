@@ -33,14 +33,14 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   runtime->given_arguments = options.arguments;
   runtime->note_reads = options.note_reads;
   runtime->leave_out_unfit = options.leave_out_unfit;
-  runtime->last_argument_must_fit = options.must_fit == MustFit::last_argument;
+  runtime->arguments_that_must_fit = options.must_fit.arguments;
   DeclaredStack stack = load_stack(lua, file, options.text);
   runtime->declaring = false;
   check_arguments(*runtime);
   shaders->search(runtime->path);
   Diagnostics* left_out = options.leave_out_unfit ? runtime->box->diagnostics : nullptr;
-  const bool last_must_fit = options.must_fit == MustFit::last_override;
-  if (auto applied = apply_overrides(stack.entries, options.overrides, *runtime, left_out, last_must_fit); !applied)
+  const std::size_t must_fit = options.must_fit.overrides;
+  if (auto applied = apply_overrides(stack.entries, options.overrides, *runtime, left_out, must_fit); !applied)
     throw ScriptError{applied.error()};
   sort_entries(stack.entries);
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;

@@ -107,8 +107,10 @@ struct ScriptLimits {
   std::shared_ptr<const std::atomic<std::chrono::steady_clock::rep>> until = {};
 };
 
-/// What is an error all the same where other values that do not fit are left out.
-enum class MustFit { nothing, last_override, last_argument };
+/// What is an error all the same where other values that do not fit are left out: how many of the last ones.
+struct MustFit {
+  std::size_t overrides = 0, arguments = 0;
+};
 
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
@@ -116,7 +118,7 @@ struct PresetOptions {
   std::vector<Override> overrides;
   std::vector<ArgumentValue> arguments;  ///< --arg
   bool leave_out_unfit = false;          ///< overrides and arguments that do not fit are warned about, and no errors
-  MustFit must_fit = MustFit::nothing;   ///< with that
+  MustFit must_fit = {};                 ///< with that
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
   bool note_reads = false;               ///< which settings effects read: Build::unread. Reading them takes longer
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist

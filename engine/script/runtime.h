@@ -118,7 +118,7 @@ struct Runtime {
   std::vector<PresetArgument> arguments;       ///< declared so far
   std::vector<ArgumentValue> given_arguments;  ///< --arg
   bool leave_out_unfit = false;                ///< PresetOptions: of arguments too
-  bool last_argument_must_fit = false;         ///< with that
+  std::size_t arguments_that_must_fit = 0;     ///< with that: of the last ones
   std::vector<DeclaredCurve> curves;
   std::size_t keys_of_settings = 0;  ///< of curves, each counted for each setting that it is given to
   std::size_t targets = 0;           ///< of volumes

@@ -141,6 +141,23 @@ def test_settings(stack):
     assert stack.report()["kernels"] == ["gain.gain"]
 
 
+@pytest.mark.parametrize("follow", [False, True])
+def test_several_settings_at_once(folder, device, follow):
+    stack = afterglow.Stack(folder / "look.lua", device=device, follow=follow)
+    stack.set({"gain.amount": np.float32(3), "gain.tint": (0.5, 1, 1), "gain.off": False})
+    assert stack.get("gain.amount") == 3 and stack.get("gain.tint") == [0.5, 1, 1]
+    for wrong in ("gain.amonut", "gain.off"):
+        with pytest.raises(afterglow.UsageError, match=wrong):
+            stack.set({"gain.amount": 9, wrong: 5, "gain.tint": "#ffffff"})
+        assert stack.get("gain.amount") == 3 and stack.get("gain.tint") == [0.5, 1, 1]
+    with pytest.raises(TypeError, match="values: dict"):
+        stack.set("gain.amount")
+    with pytest.raises(TypeError, match="gain.tint must be .* not NoneType"):
+        stack.set({"gain.amount": 9, "gain.tint": None})
+    assert stack.get("gain.amount") == 3
+    stack.set({})
+
+
 def test_arguments(folder, device):
     (folder / "look.lua").write_text(
         'local fx = require "afterglow"\n'

@@ -69,6 +69,7 @@ PYBIND11_MODULE(_afterglow, module) {
       .def(py::init<const py::object&, const py::kwargs&>(), py::arg("preset") = py::none())
       .def("run", &PyStack::run, py::arg("source"), "Runs the stack on a picture; returns the result.")
       .def("set", &PyStack::set, py::arg("name"), py::arg("value"), "Sets ENTRY.SETTING.")
+      .def("set", &PyStack::set_several, py::arg("values"), "Sets several at once, all or none.")
       .def("unset", &PyStack::unset, py::arg("name") = py::none(), "Back to what the preset says.")
       .def("set_argument", &PyStack::set_argument, py::arg("name"), py::arg("value"),
            "Gives an argument of the preset a value; None: its default.")

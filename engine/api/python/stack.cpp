@@ -44,7 +44,7 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   if (const py::object args = options.take("args"); !args.is_none())
     for (const auto& [key, value] : cast<py::dict>(args, "args", "a dict")) {
       const std::string name = py::str(key);
-      wanted.arguments.push_back(name + "=" + argument_text(name, value));
+      wanted.arguments.push_back(name + "=" + value_text(name, value));
     }
   wanted.precision = precision_of(options.take("precision", std::string("auto")));
   wanted.max_error = options.take("max_error", 0.0);
@@ -164,22 +164,18 @@ py::array PyStack::run(const py::object& source, const py::kwargs& given) {
   return result.array;
 }
 
-void PyStack::set(const std::string& name, const py::object& given) {
-  const py::object value = plain(given);
-  if (is_bool(value)) {
-    const bool on = value.cast<bool>();
-    return alone([&] { stack_->set(name, on); });
+void PyStack::set(const std::string& name, const py::object& value) {
+  const std::string text = value_text(name, value);
+  alone([&] { check(afterglow_stack_set(stack_->get(), to_view(name), to_view(text))); });
+}
+
+void PyStack::set_several(const py::dict& values) {
+  std::vector<std::pair<std::string, std::string>> several;
+  for (const auto& [key, value] : values) {
+    const std::string name = text_of(py::str(key));
+    several.emplace_back(name, value_text(name, value));
   }
-  if (py::isinstance<py::str>(value)) {
-    const std::string text = text_of(value);
-    return alone([&] { check(afterglow_stack_set(stack_->get(), to_view(name), to_view(text))); });
-  }
-  if (is_number(value)) {
-    const auto number = cast<double>(value, name, "a number");
-    return alone([&] { stack_->set(name, number); });
-  }
-  const auto numbers = cast<std::vector<double>>(value, name, "a bool, a number, a str or some numbers");
-  alone([&] { stack_->set(name, numbers); });
+  alone([&] { stack_->set(several); });
 }
 
 void PyStack::unset(const std::optional<std::string>& name) {
@@ -188,7 +184,7 @@ void PyStack::unset(const std::optional<std::string>& name) {
 
 void PyStack::set_argument(const std::string& name, const py::object& value) {
   if (value.is_none()) return alone([&] { stack_->unset_argument(name); });
-  const std::string text = argument_text(name, value);
+  const std::string text = value_text(name, value);
   alone([&] { stack_->set_argument(name, text); });
 }
 

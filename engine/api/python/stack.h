@@ -41,6 +41,7 @@ class PyStack {
 
   py::array run(const py::object& source, const py::kwargs& options);
   void set(const std::string& name, const py::object& value);
+  void set_several(const py::dict& values);
   void unset(const std::optional<std::string>& name);
   void set_argument(const std::string& name, const py::object& value);
   py::object get(const std::string& name) const;

@@ -33,16 +33,17 @@ std::vector<std::string> path_texts(const py::object& paths) {
   return out;
 }
 
-std::string argument_text(const std::string& name, const py::handle& given) {
+std::string value_text(const std::string& name, const py::handle& given) {
   const py::object value = plain(py::reinterpret_borrow<py::object>(given));
   if (py::isinstance<py::str>(value)) return text_of(value);
   if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
   if (py::isinstance<py::int_>(value)) return py::str(value).cast<std::string>();
   if (is_number(value)) return py::repr(py::float_(value)).cast<std::string>();
+  const auto numbers = cast<std::vector<double>>(value, name, "a bool, a number, a str or some numbers");
   std::string text;
-  for (const double number : cast<std::vector<double>>(value, name, "a bool, a number, a str or some numbers"))
-    text += (text.empty() ? "{" : ", ") + py::repr(py::float_(number)).cast<std::string>();
-  return text + "}";
+  for (const double number : numbers)
+    text += (text.empty() ? "" : ", ") + py::repr(py::float_(number)).cast<std::string>();
+  return numbers.size() == 1 ? text : "{" + text + "}";
 }
 
 py::object Options::take(const char* name) {

@@ -47,8 +47,8 @@ std::string path_text(const py::handle& path);
 /// One path or some.
 std::vector<std::string> path_texts(const py::object& paths);
 
-/// The value of an argument as the command line writes it.
-std::string argument_text(const std::string& name, const py::handle& value);
+/// The value of a setting or an argument as the command line writes it.
+std::string value_text(const std::string& name, const py::handle& value);
 
 /// Options by name, each asked for once; what nobody asked for is unknown.
 class Options {

@@ -95,6 +95,9 @@ TEST_F(ClassesTest, NumbersOfAllTypesAreSet) {
   stack.set("gain.off", true);
   EXPECT_TRUE(stack.get_boolean("gain.off"));
   stack.set("gain.way", "twice");
+  stack.set({{"gain.amount", "7"}, {"gain.off", "false"}});
+  EXPECT_EQ(stack.get_number("gain.amount"), 7);
+  EXPECT_FALSE(stack.get_boolean("gain.off"));
   EXPECT_EQ(stack.get_text("gain.way"), "twice");
 }
 

@@ -116,6 +116,39 @@ TEST_F(SettingsTest, EveryTypeGoesInAndOut) {
   EXPECT_FALSE(off);
 }
 
+TEST_F(SettingsTest, SeveralAreSetAtOnceAllOrNone) {
+  for (const bool follow : {false, true}) {
+    SCOPED_TRACE(follow);
+    afterglow_stack_options options = listening();
+    messages_.clear();
+    options.follow = follow;
+    stack_ = stack(options);
+    const auto set = [&](const std::vector<afterglow_string>& names, const std::vector<afterglow_string>& values) {
+      return ErrorPtr(afterglow_stack_set_several(stack_.get(), names.data(), values.data(), names.size()));
+    };
+    EXPECT_TRUE(fine(set({str("gain.amount"), str("gain.tint")}, {str("3"), str("{0.5, 1, 1}")}).release()));
+    EXPECT_FLOAT_EQ(first_sample(), 0.75f);
+    EXPECT_TRUE(fine(set({}, {}).release()));
+    // One that does not fit, wherever it stands: nothing is set, not even what did before.
+    for (const auto& [name, value] : {std::pair("gain.amonut", "1"), {"gain.way", "thrice"}, {"gain", "1"}}) {
+      for (const bool first : {true, false}) {
+        std::vector<afterglow_string> names{str("gain.amount"), str("gain.tint")}, values{str("9"), str("#ffffff")};
+        names.insert(first ? names.begin() : names.end(), str(name));
+        values.insert(first ? values.begin() : values.end(), str(value));
+        EXPECT_EQ(afterglow_error_get_kind(set(names, values).get()), AFTERGLOW_ERROR_USAGE) << name << first;
+        EXPECT_FLOAT_EQ(first_sample(), 0.75f);
+      }
+    }
+    EXPECT_TRUE(fine(set({str("gain.amount"), str("gain.amount")}, {str("3"), str("4")}).release()));
+    EXPECT_FLOAT_EQ(first_sample(), 1.0f) << "the later one";
+    ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), str("gain.amount"))));
+    EXPECT_FLOAT_EQ(first_sample(), 0.5f);
+    EXPECT_TRUE(messages_.empty()) << messages_.front();
+    const ErrorPtr none(afterglow_stack_set_several(stack_.get(), nullptr, nullptr, 1));
+    EXPECT_EQ(afterglow_error_get_kind(none.get()), AFTERGLOW_ERROR_USAGE);
+  }
+}
+
 TEST_F(SettingsTest, AnEmptyNameIsNotAll) {
   ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
   const ErrorPtr error(afterglow_stack_unset(stack_.get(), str("")));

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 from os import PathLike
-from typing import Any, Callable, Iterable, Literal, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Iterable, Literal, Mapping, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -93,8 +93,13 @@ class Stack:
         colours: they may be codes of any kind. The result is a new array like the source, of `dtype` where that is
         given, or `out`, which may be the source itself. With `region` the rest of a new array is undefined. `time` in seconds is frame / fps where it is not given, as `afterglow run` counts."""
 
+    @overload
     def set(self, name: str, value: _Value) -> None:
         """Sets ENTRY.SETTING, as in "glow.intensity". Text is read as on the command line."""
+
+    @overload
+    def set(self, values: dict[str, _Value]) -> None:
+        """Sets several at once, all or none."""
 
     def unset(self, name: Optional[str] = None) -> None: ...
     def set_argument(self, name: str, value: Optional[_Value]) -> None:
