@@ -9,6 +9,7 @@
 #include "apps/completion_script.h"
 #include "apps/man_page.h"
 #include "apps/output.h"
+#include "apps/usual_words.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -38,8 +39,16 @@ Command add_completion_command(CLI::App& program) {
   auto* app = program.add_subcommand("completion", "Print what a shell needs to complete commands and options");
   auto shell = std::make_shared<std::string>();
   app->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  auto settings = std::make_shared<bool>(false);
+  auto words = std::make_shared<std::vector<std::string>>();
+  app->add_flag("--settings", *settings, "What the script asks where settings are set")->group("");
+  app->add_option("WORDS", *words, "With it: those on the line, behind --")->group("");
   app->footer("Example: afterglow completion bash > ~/.local/share/bash-completion/completions/afterglow");
-  return {app, [shell, &program](Console&) -> Result<void> {
+  return {app, [shell, settings, words, &program](Console&) -> Result<void> {
+            if (*settings) {
+              for (const auto& word : setting_words(*words)) output("{}\n", word);
+              return {};
+            }
             const auto commands = command_words(program);
             output("{}", *shell == "bash"  ? bash_completion(commands)
                          : *shell == "zsh" ? zsh_completion(commands)

@@ -31,6 +31,7 @@ OptionWords words_of_option(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return out;
   read_type(option.get_type_name(), out);
   if (out.value.empty()) out.value = "VALUE";
+  out.settings = !out.positional && out.value.ends_with(".SETTING=VALUE");
   if (out.choices.empty()) out.usual = usual_words(out.positional ? out.names.front() : out.value);
   return out;
 }
@@ -49,7 +50,8 @@ std::vector<CommandWords> command_words(const CLI::App& program) {
   std::vector<CommandWords> out;
   for (const CLI::App* app : program.get_subcommands([](const CLI::App*) { return true; })) {
     CommandWords command{app->get_name(), app->get_description(), app->get_footer(), {}};
-    for (const CLI::Option* option : app->get_options()) command.options.push_back(words_of_option(*option));
+    for (const CLI::Option* option : app->get_options())
+      if (!option->get_group().empty()) command.options.push_back(words_of_option(*option));  // else it is hidden
     std::ranges::stable_sort(command.options, std::ranges::greater{}, &OptionWords::positional);
     out.push_back(std::move(command));
   }

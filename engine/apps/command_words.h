@@ -15,6 +15,7 @@ struct OptionWords {
   std::string value;                 ///< "FILE"; empty: a flag
   std::vector<std::string> choices;  ///< all values that it takes, when they are few
   std::vector<std::string> usual;    ///< some of those that it takes, else
+  bool settings = false;             ///< it takes ENTRY.SETTING=VALUE: `completion --settings` says which there are
   bool positional = false, required = false;
 };
 

@@ -67,18 +67,24 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
                             takes_files(*first) ? "" : " files=");
     options += fmt::format("    {}) words='{}' ;;\n", command.name, options_of(command));
     for (const auto& option : command.options) {
-      if (option.positional || (offered(option).empty() && !is_folder(option))) continue;
+      if (option.positional || (offered(option).empty() && !is_folder(option) && !option.settings)) continue;
       std::vector<std::string> keys;
       for (const auto& name : option.names) keys.push_back(command.name + "/" + name);
-      const std::string reply = offered(option).empty() ? "_afterglow_folders \"$word\""
-                                                        : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))",
-                                                                      join(offered(option), " "));
+      const std::string reply = option.settings           ? "_afterglow_settings \"$word\""
+                                : offered(option).empty() ? "_afterglow_folders \"$word\""
+                                                          : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))",
+                                                                        join(offered(option), " "));
       values += fmt::format("    {}) {}; return ;;\n", join(keys, " | "), reply);
     }
   }
   return kMade + fmt::format(R"(_afterglow_folders() {{
   compopt -o filenames 2>/dev/null
   mapfile -t COMPREPLY < <(compgen -d -- "$1")
+}}
+_afterglow_settings() {{
+  compopt -o nospace +o default 2>/dev/null
+  local known=$("${{COMP_WORDS[0]}}" completion bash --settings -- "${{COMP_WORDS[@]:2:COMP_CWORD-2}}" 2>/dev/null)
+  COMPREPLY=($(compgen -W "$known" -- "$1"))
 }}
 _afterglow() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}} words= files=1
@@ -114,9 +120,10 @@ complete -o default -F _afterglow afterglow
 
 std::string zsh_completion(const std::vector<CommandWords>& commands) {
   const auto spec = [](const OptionWords& option) {
-    const std::string action = !offered(option).empty() ? "(" + join(offered(option), " ") + ")"
-                               : is_folder(option)      ? "_directories"
-                                                        : "_files";
+    const std::string action = option.settings            ? "_afterglow_settings"
+                               : !offered(option).empty() ? "(" + join(offered(option), " ") + ")"
+                               : is_folder(option)        ? "_directories"
+                                                          : "_files";
     const std::string value = escaped(option.value, ":", "\\");
     if (option.positional)
       return quoted_word(fmt::format("{}:{}:{}", option.required ? "" : ":", option.names.front(), action));
@@ -138,14 +145,17 @@ std::string zsh_completion(const std::vector<CommandWords>& commands) {
                            takes_files(*first) ? "; _files" : "");
     cases += " \\\n        '*:file:_files' ;;\n";
   }
-  return fmt::format("#compdef afterglow\n{}", kMade) + fmt::format(R"(_afterglow() {{
+  return fmt::format("#compdef afterglow\n{}", kMade) + fmt::format(R"(_afterglow_settings() {{
+  compadd -S '' -- $($program completion zsh --settings -- $words[2,CURRENT-1] 2>/dev/null)
+}}
+_afterglow() {{
   local -a commands=(
 {}  )
   if ((CURRENT == 2)); then
     _describe command commands
     return
   fi
-  local command=$words[2]
+  local program=$words[1] command=$words[2]
   shift words
   ((CURRENT--))
   case $command in
@@ -157,7 +167,11 @@ _afterglow "$@"
 }
 
 std::string fish_completion(const std::vector<CommandWords>& commands) {
-  std::string out = kMade;
+  std::string out = kMade + std::string(R"(function __afterglow_settings
+  set -l words (commandline -opc)
+  $words[1] completion fish --settings -- $words[3..-1] 2>/dev/null
+end
+)");
   const auto text = [](const std::string& words) { return "'" + escaped(words, "'\\", "\\") + "'"; };
   for (const auto& command : commands)
     out += fmt::format("complete -c afterglow -n __fish_use_subcommand -f -a {} -d {}\n", command.name,
@@ -174,7 +188,9 @@ std::string fish_completion(const std::vector<CommandWords>& commands) {
       out += fmt::format("complete -c afterglow -n '__fish_seen_subcommand_from {}'", command.name);
       for (const auto& name : option.names)
         out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      if (!offered(option).empty())
+      if (option.settings)
+        out += " -x -a '(__afterglow_settings)'";
+      else if (!offered(option).empty())
         out += " -x -a " + text(join(offered(option), " "));
       else if (is_folder(option))
         out += " -x -a '(__fish_complete_directories)'";

@@ -7,6 +7,7 @@
 #include "image/video_writer.h"
 #include "image/writer.h"
 #include "script/preset.h"
+#include "shader/library.h"
 
 namespace afterglow {
 namespace {
@@ -27,7 +28,34 @@ std::vector<std::string> output_formats() {
   return names;
 }
 
+std::vector<std::string> settings_of(const Preset& preset) {
+  std::vector<std::string> out;
+  for (const StackEntry& entry : preset.entries())
+    for (const auto& setting : preset.setting_names(entry)) out.push_back(entry.name + "." + setting + "=");
+  return out;
+}
+
+std::optional<Preset> preset_of(const std::string& word) {
+  Diagnostics quiet;
+  const auto file = find_preset_file(word, {});
+  if (!file) return {};
+  ShaderLibrary shaders(search_path_for(*file, {}));
+  auto preset = Preset::load(*file, {}, shaders, quiet);
+  return preset ? std::optional(std::move(preset).value()) : std::nullopt;
+}
+
 }  // namespace
+
+std::vector<std::string> setting_words(const std::vector<std::string>& words) {
+  for (const auto& word : words)
+    if (const auto preset = preset_of(word)) return settings_of(*preset);
+  std::vector<std::string> out;
+  Diagnostics quiet;
+  if (const auto effects = list_effects(search_path_for({}, {}), quiet))
+    for (const auto& effect : *effects)
+      for (const auto& setting : effect.settings) out.push_back(effect.name + "." + setting.name + "=");
+  return out;
+}
 
 std::vector<std::string> usual_words(const std::string& kind) {
   if (kind == "PRESET") return search_path_for({}, {}).preset_names();

@@ -12,4 +12,7 @@ namespace afterglow {
 /// other kinds none.
 std::vector<std::string> usual_words(const std::string& kind);
 
+/// "ENTRY.SETTING=" of all that the first preset among these words has; where there is none, of all effects.
+std::vector<std::string> setting_words(const std::vector<std::string>& words);
+
 }  // namespace afterglow

@@ -33,7 +33,8 @@ class Completions : public CliTest {
   }
   /// What bash offers for the last of these words.
   std::vector<std::string> offered(const std::string& words) const {
-    write("offer.sh", "source completion.bash\nCOMP_WORDS=(afterglow " + words +
+    write("offer.sh", "afterglow() { " AFTERGLOW_PROGRAM " \"$@\"; }\nsource completion.bash\nCOMP_WORDS=(afterglow " +
+                          words +
                           ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_afterglow\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
     RunOptions options;
     options.program = "/bin/bash";
@@ -96,6 +97,24 @@ TEST_F(Completions, BashOffersCommandsOptionsAndValues) {
   EXPECT_THAT(offered("man ru"), testing::ElementsAre("run"));
   EXPECT_THAT(offered("completion z"), testing::ElementsAre("zsh"));
   EXPECT_THAT(offered("effects blo"), testing::ElementsAre("bloom"));
+}
+
+TEST_F(Completions, BashOffersTheSettingsOfThePresetOnTheLine) {
+  write("completion.bash", print({"completion", "bash"}));
+  write("own.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.bloom { name = \"glow\" }, fx.exposure {} }\n");
+  write("a.exr", "no picture");
+  EXPECT_THAT(offered("run own.lua a.exr --set expo"),
+              testing::ElementsAre("exposure.ev=", "exposure.at=", "exposure.blend=", "exposure.enabled=",
+                                   "exposure.mask=", "exposure.opacity=", "exposure.order="));
+  EXPECT_THAT(offered("run -i a.exr own.lua --set glow.thr"), testing::ElementsAre("glow.threshold="));
+  EXPECT_THAT(offered("run own.lua --set bloom.thr"), IsEmpty()) << "it has no such entry";
+  EXPECT_THAT(offered("play neon_night --set tone_mapping.enab"), testing::ElementsAre("tone_mapping.enabled="));
+  EXPECT_THAT(offered("run --set bloom.thr"), testing::ElementsAre("bloom.threshold=")) << "of all effects";
+  write("broken.lua", "return {");
+  EXPECT_THAT(offered("run broken.lua --set bloom.thr"), testing::ElementsAre("bloom.threshold="));
+  EXPECT_THAT(print({"completion", "zsh"}), HasSubstr(":EFFECT.SETTING=VALUE:_afterglow_settings'"));
+  EXPECT_THAT(print({"completion", "fish"}), HasSubstr(" -l set -x -a '(__afterglow_settings)'"));
 }
 
 TEST_F(Completions, UnknownShellsAndCommandsAreRefused) {
