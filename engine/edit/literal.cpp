@@ -81,6 +81,10 @@ std::string quoted(std::string_view old, const std::string& content) {
   const char quote = old.starts_with('\'') ? '\'' : '"';
   std::string out(1, quote);
   for (const char c : content) {
+    if (c == '\n' || c == '\t') {
+      out += c == '\n' ? "\\n" : "\\t";
+      continue;
+    }
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
       out += fmt::format("\\{:03}", static_cast<int>(static_cast<unsigned char>(c)));
       continue;
