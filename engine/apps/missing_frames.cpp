@@ -16,10 +16,9 @@ MissingFrames::~MissingFrames() {
   }
 }
 
-bool MissingFrames::continues(const Error& error) const {
-  const auto number = own_frame_number(error.file);
-  if (!first_ || !number || without_frame_number(error.file) != without_frame_number(first_->file)) return false;
-  const int step = *number - number_;
+bool MissingFrames::continues(const std::string& file, int number) const {
+  if (!first_ || without_frame_number(file) != without_frame_number(first_->file)) return false;
+  const int step = number - number_;
   return step > 0 && (count_ == 1 || step == step_);
 }
 
@@ -29,19 +28,19 @@ void MissingFrames::next() {
 
 void MissingFrames::add(const Error& error) {
   added_ = true;
-  const bool absent = error.message == "no such file" && error.trail.empty() && own_frame_number(error.file);
-  if (absent && continues(error)) {
-    const int number = *own_frame_number(error.file);
-    step_ = number - number_;
-    number_ = number;
+  const bool absent = error.message == "no such file" && error.trail.empty();
+  const auto number = absent ? own_frame_number(error.file) : std::nullopt;
+  if (number && continues(error.file, *number)) {
+    step_ = *number - number_;
+    number_ = *number;
     last_ = error.file;
     ++count_;
     return;
   }
   tell_kept();
-  if (!absent) return tell_(error);
+  if (!number) return tell_(error);
   first_ = error;
-  number_ = *own_frame_number(error.file);
+  number_ = *number;
   count_ = 1;
 }
 

@@ -23,7 +23,7 @@ class MissingFrames {
   void next();
 
  private:
-  bool continues(const Error& error) const;
+  bool continues(const std::string& file, int number) const;
   void tell_kept();
 
   std::function<void(const Error&)> tell_;
