@@ -47,7 +47,7 @@ Result<void> choose(const std::string& text, ExplainView& view) {
 
 Result<void> run_explain(const ExplainArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
-  ExplainView view{look, arguments.preset.file, look.build.context, "", ""};
+  ExplainView view{look, arguments.preset.file, look.build.context, moving_passes(look), "", ""};
   if (!arguments.setting.empty()) AFTERGLOW_CHECK(choose(arguments.setting, view));
   output("{}", arguments.format == "json" ? explain_json(view) : printable(explain_text(view), true));
   return {};

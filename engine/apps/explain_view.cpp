@@ -37,10 +37,12 @@ struct PassFate {
   const Pass* pass;
   const char* state;  ///< "runs", "fused", "skipped"
   std::string kernel, reason;
-  bool once = false;  // it runs when its settings change, not in every frame
+  bool once = false;    // it runs when its values change, not in every frame
+  bool moving = false;  // as they do from this frame to the next
 };
 
-std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
+std::vector<PassFate> fates_of(const ExplainView& view, const std::string& entry) {
+  const Look& look = view.look;
   std::vector<PassFate> fates;
   for (std::size_t i = 0; i < look.build.graph.passes.size(); ++i) {
     const Pass& pass = look.build.graph.passes[i];
@@ -54,7 +56,8 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
     const PlanKernel& runs = look.plan.kernels[static_cast<std::size_t>(kernel)];
     const bool first = runs.passes.front() == static_cast<int>(i);
     fates.push_back({&pass, first ? "runs" : "fused", runs.name, first ? "" : kFusionReason,
-                     static_cast<bool>(look.plan.once[static_cast<std::size_t>(kernel)])});
+                     static_cast<bool>(look.plan.once[static_cast<std::size_t>(kernel)]),
+                     view.moving.contains(pass.name)});
   }
   return fates;
 }
@@ -62,7 +65,9 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
 std::string fate_text(const Look& look, const PassFate& fate) {
   if (fate.kernel.empty()) return "skipped: " + fate.reason;
   const std::string what = fmt::format("{} {}", info_of(fate.pass->kind).name, size_text(look.build.graph, *fate.pass));
-  const std::string often = fate.once ? ", once: it depends on settings and size alone" : "";
+  const std::string often = !fate.once    ? ""
+                            : fate.moving ? ", once, and again in each frame: its values change with the frame"
+                                          : ", once: it depends on settings and size alone";
   if (std::string_view(fate.state) == "fused") return fmt::format("{}, fused into {}", what, fate.kernel);
   return fate.kernel == fate.pass->name ? what + ", runs" + often
                                         : fmt::format("{}, runs as {}{}", what, fate.kernel, often);
@@ -134,7 +139,7 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
     for (const auto& kept : view.look.build.graph.histories)
       if (kept.effect == entry.name) out += history_text(view.look.build.graph, kept);
   Table passes({"pass", ""});
-  const auto fates = fates_of(view.look, entry.name);
+  const auto fates = fates_of(view, entry.name);
   for (const auto& fate : fates) passes.add({fate.pass->name, fate_text(view.look, fate)});
   return fates.empty() || !view.setting.empty() ? out : out + passes.text("   ");
 }
@@ -181,11 +186,12 @@ std::string explain_json(const ExplainView& view) {
     for (const auto& setting : explanation.entries[i].settings)
       if (shown(view.setting, setting.name)) item["settings"].push_back(history_json(setting));
     item["passes"] = Json::array();
-    for (const auto& fate : fates_of(view.look, entries[i].name)) {
+    for (const auto& fate : fates_of(view, entries[i].name)) {
       Json pass{{"name", fate.pass->name}, {"state", fate.state}};
       if (!fate.kernel.empty()) pass["kernel"] = fate.kernel;
       if (!fate.reason.empty()) pass["reason"] = fate.reason;
       if (fate.once) pass["once"] = true;
+      if (fate.once && fate.moving) pass["again_in_each_frame"] = true;
       item["passes"].push_back(std::move(pass));
     }
     for (const auto& history : view.look.build.graph.histories)

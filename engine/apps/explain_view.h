@@ -12,8 +12,9 @@ namespace afterglow {
 struct ExplainView {
   const Look& look;
   std::string file;
-  BuildContext context;        ///< of the frame that was built
-  std::string entry, setting;  ///< show these alone; empty: all
+  BuildContext context;          ///< of the frame that was built
+  std::set<std::string> moving;  ///< moving_passes
+  std::string entry, setting;    ///< show these alone; empty: all
 };
 
 std::string explain_text(const ExplainView& view);

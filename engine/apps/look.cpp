@@ -42,6 +42,26 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   return look;
 }
 
+std::set<std::string> moving_passes(const Look& look) {
+  BuildContext context = look.build.context;
+  context.frame += context.step;
+  context.time += context.step / context.fps;
+  Diagnostics silent;
+  const auto next = look.preset->evaluate(context, silent);
+  if (!next) return {};  // there may be no such frame
+  std::set<std::string> moving;
+  std::set<ImageId> images;
+  for (const Pass& pass : look.build.graph.passes) {
+    const auto then = std::ranges::find(next->graph.passes, pass.name, &Pass::name);
+    const bool same = then != next->graph.passes.end() && then->params == pass.params;
+    if (same && std::ranges::none_of(pass.inputs, [&](const PassInput& in) { return images.contains(in.image); }))
+      continue;
+    moving.insert(pass.name);
+    images.insert(pass.output);
+  }
+  return moving;
+}
+
 namespace {
 
 /// As `run` executes on a CPU device, the one that is always there.

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "apps/options.h"
@@ -23,6 +25,9 @@ struct Look {
 
 /// Errors: script, usage.
 Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console);
+
+/// Names of the passes that the next frame makes of other values, or of what such passes make.
+std::set<std::string> moving_passes(const Look& look);
 
 struct LookFindings {
   ShaderFindings shaders;

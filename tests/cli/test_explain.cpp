@@ -134,6 +134,21 @@ TEST_F(Explain, WhatIsMadeOnce) {
     EXPECT_EQ(kernel.value("once", false), kernel["name"] == "lens_dirt.spots") << kernel["name"];
 }
 
+TEST_F(Explain, WhatIsMadeAgainWithEachFrame) {
+  for (const bool moving : {false, true}) {
+    write("label.lua", std::string("local fx = require \"afterglow\"\nreturn fx.stack { fx.burn_in { text = \"") +
+                           (moving ? "{frame}" : "shot 3") + "\" } }\n");
+    const Outcome outcome = run({"explain", "label.lua"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.out, ContainsRegex(std::string("burn_in\\.letters +sample [^ ]+, runs, once") +
+                                           (moving ? ", and again in each frame: its values change with the frame\n"
+                                                   : ": it depends on settings and size alone\n")));
+    const json label = parsed({"explain", "label.lua", "--format", "json"}).at("entries").at(0).at("passes").at(0);
+    EXPECT_EQ(label.at("once"), true);
+    EXPECT_EQ(label.value("again_in_each_frame", false), moving);
+  }
+}
+
 TEST_F(Explain, HowEntriesArePutOverWhatTheyWereGiven) {
   write("faded.lua",
         "local fx = require \"afterglow\"\n"
