@@ -51,7 +51,7 @@ void tell_submission(const farm::Job& job, const farm::Submissions& submitted, c
 }
 
 Result<void> run_submit(const FarmArguments& a, Console& console) {
-  AFTERGLOW_TRY(const PlannedJob planned, plan_job(a, !a.dry_run, console));
+  AFTERGLOW_TRY(PlannedJob planned, plan_job(a, !a.dry_run, console));
   const farm::Job& job = planned.job;
   if (a.dry_run) {
     output("{}", farm::plan_text(job));
@@ -68,6 +68,7 @@ Result<void> run_submit(const FarmArguments& a, Console& console) {
     return {};
   }
   auto submitted = farm::submit(job, farm::every_task(job));
+  planned.alone.reset();
   if (!submitted) {
     if (!is_file(job.folder / "slurm.json")) discard(planned);
     return std::move(submitted).error();

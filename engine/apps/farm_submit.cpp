@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "apps/farm_rival.h"
 #include "core/file.h"
 #include "core/inside.h"
 #include "core/own_file.h"
@@ -123,6 +124,8 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   }
   out.new_folder = new_folder(request.files.output);
   AFTERGLOW_CHECK(make_folder(out.new_folder));
+  out.alone = std::make_unique<FileLock>(outputs.empty() ? "." : outputs);
+  AFTERGLOW_CHECK(check_no_rival(out, outputs));
   AFTERGLOW_TRY(job.folder, farm::make_job_folder(outputs));
   job.id = job.folder.filename().string();
   const auto packed = pack(arguments, request, out.frames, look, job, console);

@@ -2,8 +2,11 @@
 // From a look and frames to a job of chunks.
 #pragma once
 
+#include <memory>
+
 #include "apps/console.h"
 #include "apps/farm_arguments.h"
+#include "core/file_lock.h"
 
 namespace afterglow {
 
@@ -13,6 +16,7 @@ struct PlannedJob {
   FrameListRequest files;
   std::vector<FrameJob> frames;
   std::filesystem::path new_folder{};  ///< of the outputs, that was made for the job; empty: it was there
+  std::unique_ptr<FileLock> alone{};   ///< of a job that is written: none other is submitted beside its outputs
 };
 
 /// Lists the frames, loads the look, cuts the chunks. With `write` its folder is made and everything is packed into

@@ -94,11 +94,8 @@ Error not_a_job(const fs::path& file, const std::string& why) {
 
 /// The newest job of a folder of outputs; empty: there is none.
 fs::path latest_job(const fs::path& outputs) {
-  fs::path latest;
-  std::error_code ec;
-  for (fs::directory_iterator it(outputs / kFolder, ec), end; !ec && it != end; it.increment(ec))
-    if (is_file(it->path() / "job.json") && it->path().filename() > latest.filename()) latest = it->path();
-  return latest;
+  const auto folders = job_folders(outputs);
+  return folders.empty() ? fs::path() : folders.back();
 }
 
 }  // namespace
@@ -215,6 +212,15 @@ Result<Job> read_job(const fs::path& folder) {
   } catch (const std::exception& error) {
     return not_a_job(file, error.what());
   }
+}
+
+std::vector<fs::path> job_folders(const fs::path& outputs) {
+  std::vector<fs::path> folders;
+  std::error_code ec;
+  for (fs::directory_iterator it(outputs / kFolder, ec), end; !ec && it != end; it.increment(ec))
+    if (is_file(it->path() / "job.json")) folders.push_back(it->path());
+  std::ranges::sort(folders);
+  return folders;
 }
 
 Result<Job> find_job(const std::string& given) {

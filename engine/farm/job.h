@@ -79,6 +79,8 @@ std::string new_job_id();
 Result<void> write_job(const Job& job);
 /// Errors: io (no job, one of a later version).
 Result<Job> read_job(const std::filesystem::path& folder);
+/// The folders of all jobs beside these outputs, the latest at the end.
+std::vector<std::filesystem::path> job_folders(const std::filesystem::path& outputs);
 /// The job that is meant: its folder, its ID with the outputs in this folder, or a folder of outputs, whose latest job
 /// it is. Errors: io.
 Result<Job> find_job(const std::string& given);

@@ -76,6 +76,30 @@ TEST_F(FakeSlurm, SubmissionsAtOnceLoseNoArray) {
   EXPECT_EQ(std::ranges::count(cancelled, '\n'), 3) << cancelled;
 }
 
+/// A job that runs is left alone by those that would make the same outputs.
+TEST_F(FakeSlurm, TwoJobsDoNotMakeTheSameOutputsAtOnce) {
+  const auto submit = [&](const std::string& frames, const std::string& output = "out/") {
+    return run({"farm", "look.lua", "in/shot.####.exr", "--frames", frames, "-o", output}, with_fakes());
+  };
+  program("sbatch", "sleep 0.2; echo 7");
+  program("squeue", "echo '7|0|RUNNING|n1|None'");
+  auto other = std::async(std::launch::async, [&] { return submit("1-2"); });
+  const Outcome one = submit("1-2"), two = other.get();
+  EXPECT_EQ(std::min(one.exit_code, two.exit_code), kDone) << one.err;
+  EXPECT_EQ(std::max(one.exit_code, two.exit_code), kFiles) << "one of two at once";
+  const std::string job = job_of("out").string();
+  for (const char* frames : {"1-2", "2-3"}) {
+    const Outcome outcome = submit(frames);
+    EXPECT_EQ(outcome.exit_code, kFiles);
+    EXPECT_THAT(outcome.err, HasSubstr(job + ": error: this job is not done (1 running) and makes "));
+    EXPECT_THAT(outcome.err, HasSubstr("allowed: `afterglow farm status --wait " + job + "`"));
+  }
+  EXPECT_EQ(submit("1-2", "out/s.####.exr").exit_code, kDone) << "other names";
+  EXPECT_EQ(submit("3-4").exit_code, kDone) << "other frames";
+  program("squeue", "");
+  EXPECT_EQ(submit("1-2").exit_code, kDone) << "it has ended";
+}
+
 TEST_F(FakeSlurm, AccountingIsAskedOnTheJobsCluster) {
   program("sbatch", "echo '123;alpha'");
   program("sacct", "case \"$*\" in *--clusters=alpha*) ;; *) echo '123_0|TIMEOUT|stranger' ;; esac");
