@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -67,6 +68,26 @@ std::string function_name(const Module& module, std::uint32_t id) {
   return {};
 }
 
+/// Functions of the prelude that stand for texture and its kin where the position is of whole numbers.
+std::set<std::uint32_t> whole_textures(const Module& module) {
+  std::set<std::uint32_t> out;
+  for (const auto& i : module.code) {
+    if (i.op != spv::OpName) continue;
+    const std::string_view name = reinterpret_cast<const char*>(&i.words[2]);
+    if (name.starts_with("ag_texture") && name.find("(s21;vi2;") != name.npos) out.insert(i.words[1]);
+  }
+  return out;
+}
+
+/// The index of the first call of one of them.
+std::optional<std::size_t> texture_of_whole_numbers(const Module& module) {
+  const auto functions = whole_textures(module);
+  const auto found = std::ranges::find_if(
+      module.code, [&](const Instruction& i) { return i.op == spv::OpFunctionCall && functions.contains(i.words[3]); });
+  if (found == module.code.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - module.code.begin());
+}
+
 Error error_at(const LinedModule& lined, std::optional<std::size_t> index, const AssembledKernel& assembled,
                std::string message) {
   const SourcePlace place = index ? lined.places[*index] : SourcePlace{};
@@ -81,7 +102,8 @@ Result<void> check_usable(const std::vector<std::uint32_t>& spirv, const Assembl
   const auto module = parse(spirv);
   if (!module) return Error{ErrorKind::other, "the compiled shader is no SPIR-V"};
   const auto ability = missing_ability(*module);
-  if (!ability && !divergent_barrier(*module)) return {};
+  const bool whole = texture_of_whole_numbers(*module).has_value();
+  if (!ability && !whole && !divergent_barrier(*module)) return {};
 
   AFTERGLOW_TRY(const LinedModule lined, compile_with_lines(assembled.glsl, stage));
   const auto& code = lined.module.code;
@@ -90,6 +112,12 @@ Result<void> check_usable(const std::vector<std::uint32_t>& spirv, const Assembl
     const bool placed = *ability == spv::CapabilityImageGatherExtended && found != code.end();
     return error_at(lined, placed ? std::optional(static_cast<std::size_t>(found - code.begin())) : std::nullopt,
                     assembled, fmt::format("{} is not allowed: not all devices have it", name_of(*ability)));
+  }
+  if (whole) {
+    Error error = error_at(lined, texture_of_whole_numbers(lined.module), assembled,
+                           "texture takes a position from 0 to 1, not whole numbers");
+    error.allowed = "fetch(image, pixel) for a pixel, a vec2 for a position";
+    return error;
   }
   const auto barrier = divergent_barrier(lined.module);
   const bool call = barrier && code[*barrier].op == spv::OpFunctionCall;

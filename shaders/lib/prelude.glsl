@@ -80,6 +80,10 @@ vec4 ag_texture(sampler2D image, vec2 at, float level) { return ag_texture(image
 vec4 ag_texture_offset(sampler2D image, vec2 at, ivec2 texels) {
   return ag_texture(image, at + vec2(texels) / vec2(image_size(image)));
 }
+// Whole numbers are no positions from 0 to 1: who calls these meant `fetch`, and is told (engine/shader/usable.cpp).
+vec4 ag_texture(sampler2D image, ivec2 at) { return vec4(0.0); }
+vec4 ag_texture(sampler2D image, ivec2 at, float level) { return vec4(0.0); }
+vec4 ag_texture_offset(sampler2D image, ivec2 at, ivec2 texels) { return vec4(0.0); }
 
 // GLSL's own, which some drivers get wrong where the number is a constant (Mesa 22.3 on CPUs).
 vec2 ag_unpack_half(uint bits) { return vec2(unpackHalf2x16(bits).x, unpackHalf2x16(bits >> 16).x); }

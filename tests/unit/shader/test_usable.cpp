@@ -102,6 +102,19 @@ TEST(Usable, WhatDevicesNeedNotHaveIsRefused) {
   EXPECT_EQ(sample("return texture(source, at) / float(textureSize(source, 0).x);"), "ok");
 }
 
+TEST(Usable, TextureAtWholeNumbersIsTold) {
+  const auto sample = [](const std::string& text) {
+    return said_of("uniform sampler2D source;\nuniform float v;\nvec4 sample_at(ivec2 pixel) {\n" + text + "\n}\n");
+  };
+  for (const char* call : {"texture(source, pixel)", "textureLod(source, pixel + 1, 0.0)",
+                           "textureOffset(source, pixel, ivec2(1, 0))", "v * texture(source, ivec2(3, 4)).rgbr"})
+    EXPECT_THAT(sample(std::string("vec4 c = fetch(source, pixel);\nreturn ") + call + ";"),
+                AllOf(HasSubstr("x.glsl:5: error: texture takes a position from 0 to 1, not whole numbers"),
+                      HasSubstr("fetch(image, pixel)")))
+        << call;
+  EXPECT_EQ(sample("return texture(source, vec2(pixel) / 8.0) + textureLod(source, vec2(0.5), 0.0);"), "ok");
+}
+
 TEST(Usable, WhatBeginnersWriteIsAnsweredWithWhatToWrite) {
   const auto sample = [](const std::string& text) {
     return said_of("uniform sampler2D source;\nuniform float v;\nvec4 sample_at(ivec2 pixel) {\n" + text + "\n}\n");
