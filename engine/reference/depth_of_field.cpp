@@ -93,7 +93,7 @@ struct Iris {
   double area(double radius) const { return kPi * (radius * radius + soft() * soft() / 12); }
 };
 
-int level_for(double radius, int samples) {
+int level_for(double radius, double samples) {
   const double texels = kPi / 4 * radius * radius;
   return texels > 4 * samples ? 2 : texels > samples ? 1 : 0;
 }
@@ -167,9 +167,10 @@ DoubleImage far_field(const Pyramid& pyramid, const Iris& iris, int factor) {
   return generate(small.size(), [&](int x, int y) {
     const Rgba own = small.at(x, y);
     const bool hidden = own.a < 0;
-    const double circle = std::abs(own.a), weight = glm::max(blurred_by(circle * factor, factor), 1.0 / 4096);
-    const int level = glm::min(level_for(circle, iris.s.samples) + (hidden ? 1 : 0), 2);
-    const double radius = before_means(circle);
+    const double circle = std::abs(own.a), blur = blurred_by(circle * factor, factor),
+                 weight = glm::max(blur, 1.0 / 4096);
+    const int level = level_for(circle, hidden ? 0.25 * iris.s.samples : iris.s.samples);
+    const double radius = glm::max(before_means(circle), hidden ? 1.0 : 0.0);
     if (radius <= 0) return Rgba(Rgb(own), 1) * weight;
     Rgba sum(0);
     pyramid.visit(
@@ -182,7 +183,8 @@ DoubleImage far_field(const Pyramid& pyramid, const Iris& iris, int factor) {
           sum += counts * iris.disc(held, iris.radius_of(offset, x, y, small.size())) * Rgba(Rgb(read), 1);
         },
         hidden);
-    return (sum * static_cast<double>(4 << (2 * level)) / iris.area(radius) + 1e-5 * Rgba(Rgb(own), 1)) * weight;
+    return sum * (static_cast<double>(4 << (2 * level)) / iris.area(radius) * weight) +
+           glm::max((1 - blur) / 4096, 1e-5) * Rgba(Rgb(own), 1);
   });
 }
 

@@ -21,12 +21,12 @@ const int kMost = 128;  // turns, more than a row has
 vec4 sample_at(ivec2 pixel) {
   vec4 own = fetch(source, pixel);
   bool hidden = own.a < 0.0;
-  float circle = abs(own.a), weight = max(blurred(circle * factor, factor), 1.0 / 4096.0);
-  int level = min(level_for(circle, samples) + (hidden ? 1 : 0), 2);  // what is seen around is read more sparsely
-  float radius = before_means(circle);
+  float circle = abs(own.a), blur = blurred(circle * factor, factor), weight = max(blur, 1.0 / 4096.0);
+  int level = level_for(circle, hidden ? 0.25 * samples : samples);  // what is seen around is read more sparsely
+  float radius = max(before_means(circle), hidden ? 1.0 : 0.0);      // at least the next texels, or what hides would be its own background
   if (radius <= 0.0) return vec4(own.rgb, 1.0) * weight;
   vec3 tube = tube_at(vec2(pixel) + 0.5, vec2(small), cat_eye);
-  float texel = float(1 << level), soft = stretch.z, reach = radius + 0.5 * soft, own_area = disc_area(radius, soft), per_circle = 1.0 / circle;
+  float texel = float(1 << level), soft = stretch.z, reach = radius + 0.5 * soft, own_area = disc_area(radius, soft), per_circle = 1.0 / max(circle, 1e-6);
   ivec2 last = last_texel(small, level), origin = origin_of(small, level), rows = rows_of(pixel, reach / stretch.y, level);
   vec2 shift = (0.5 * texel - 0.5) - vec2(pixel);  // centres of texels, from the pixel's
   vec4 sum = vec4(0.0);
@@ -49,5 +49,6 @@ vec4 sample_at(ivec2 pixel) {
       if (x + 2 > columns.y) break;  // behind the reads: CPU drivers take no turn to see that there are no more
     }
   }
-  return (sum * (4.0 * texel * texel / own_area) + vec4(own.rgb, 1.0) * 1e-5) * weight;
+  // Where nothing is seen, and of what is all but sharp.
+  return sum * (4.0 * texel * texel / own_area * weight) + vec4(own.rgb, 1.0) * max((1.0 - blur) / 4096.0, 1e-5);
 }

@@ -2,6 +2,7 @@
 // Depth of field: the oracle, and what may not leak.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cases.h"
@@ -90,6 +91,28 @@ TEST_F(Effects, EdgePixelsLeaveNoContourInBlurredEdges) {
     for (int x = 0; x < 80; ++x) {
       const auto at = 4 * static_cast<std::size_t>(80 * y + x);
       EXPECT_NEAR(made[at], expected[at], 2e-3) << x << " " << y;
+    }
+}
+
+/// What is seen around a bar was read so sparsely that some of its pixels saw nothing and stood for it: teeth along it.
+TEST_F(Effects, ThinThingsInFrontHaveNoTeeth) {
+  for (const double depth : {1.5, 1.3, 1.0, 0.7})
+    for (const int width : {3, 5, 9, 14}) {
+      constexpr int kSide = 1040;  // large enough for a small picture of half the size
+      Scene scene{"bar", DoubleImage(kSide, 48, Rgba(4, 4, 4, 1)), DoubleImage(kSide, 48, Rgba(2, 0, 0, 1)), {}};
+      for (int y = 0; y < 48; ++y)
+        for (int x = 41; x < 41 + width; ++x) {
+          scene.source.at(x, y) = Rgba(0.02, 0.02, 0.02, 1);
+          scene.depth->at(x, y) = Rgba(depth, 0, 0, 1);
+        }
+      const auto made = run_stack(kWide, scene, Way::plain).result;
+      double most = 0;
+      for (int y = 16; y < 32; ++y)
+        for (int x = 24; x < 72; ++x) {
+          const auto at = 4 * static_cast<std::size_t>(kSide * y + x);
+          most = std::max<double>(most, std::abs(made[at] - made[at - 4 * kSide]));
+        }
+      EXPECT_LT(most, 0.01) << "along a bar " << width << " wide at " << depth;
     }
 }
 
