@@ -37,6 +37,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field time number   seconds
 ---@field fps number    pictures per second
 ---@field length_scale number  pixels of the picture for each pixel that settings in px are given in: below 1 in previews
+---@field preview_scale number  pixels of the picture for each pixel of the one that is delivered: below 1 in previews alone, whatever `reference_height` is
 ---@field frame_time number  seconds since the frame before, which histories hold
 ---@field pass fun(self: afterglow.Graph, pass: afterglow.Pass): afterglow.Image          runs a shader
 ---@field filter fun(self: afterglow.Graph, pass: afterglow.FilterPass): afterglow.Image  resamples an image

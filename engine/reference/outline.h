@@ -26,6 +26,7 @@ struct OutlineSettings {
   double divide_factor = 1;
   bool level_slopes = true;  ///< offset: planes draw no line
   double contrast = 1;
+  double smoothness = 0;  ///< how much 3×3 pixels decide on a line
   Rgb color{0, 0, 0};
   OutlineBlend blend = OutlineBlend::lerp;
 };

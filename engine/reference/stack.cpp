@@ -91,6 +91,7 @@ DoubleImage run_outline(const DoubleImage& source, const Inputs& inputs, const S
       .divide_factor = s.number("divide_factor"),
       .level_slopes = s.flag("level_slopes"),
       .contrast = s.number("contrast"),
+      .smoothness = s.number("smoothness"),
       .color = s.color("color"),
       .blend = s.is("blend", "add") ? OutlineBlend::add : OutlineBlend::lerp};
   return outline(source, inputs.depth, inputs.normal, settings);

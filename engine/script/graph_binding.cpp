@@ -201,10 +201,12 @@ int graph_index(lua_State* lua) {
     lua_pushnumber(lua, context.step / context.fps);
   else if (name == "length_scale")
     lua_pushnumber(lua, graph.length_scale());
+  else if (name == "preview_scale")
+    lua_pushnumber(lua, context.length_scale);
   else {
-    const std::vector<std::string> names{"cryptomatte", "filter", "fps",   "frame", "frame_time",
-                                         "history",     "image",  "input", "keep",  "length_scale",
-                                         "lookup",      "ocio",   "pass",  "skip",  "time"};
+    const std::vector<std::string> names{
+        "cryptomatte", "filter",       "fps",    "frame", "frame_time", "history",       "image", "input",
+        "keep",        "length_scale", "lookup", "ocio",  "pass",       "preview_scale", "skip",  "time"};
     throw failure(fmt::format("the graph has no {}", key.shown()), {}, join(names), nearest_name(name, names));
   }
   return 1;

@@ -360,6 +360,7 @@
 ---@field normal_scale? number|afterglow.Moving  Factor of normal differences; a right angle differs by 1.41. default 1
 ---@field divide_factor? number|afterglow.Moving  The edge is divided by this. ≥ 1e-06, default 1
 ---@field contrast? number|afterglow.Moving  Steepness around an edge of one half: 1 leaves it, high values make lines hard and drop weak ones. ≥ 0, default 1
+---@field smoothness? number|afterglow.Moving  How much 3x3 pixels decide together: lines get smooth sides and no teeth, and crawl less in sequences. 0: each pixel for itself. 0…1, default 0
 ---@field level_slopes? boolean|afterglow.OfTime  offset: depth counts as far as it leaves the plane that goes on from the pixel behind, so that ground seen at a grazing angle draws no line. false: every difference counts, as in the source. default true
 ---@field color? number[]|string|afterglow.Moving  Ink. It ends where the picture's alpha is 0. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field blend? "lerp"|"add"|afterglow.OfTime  lerp: ink covers the picture. add: ink is light that is added. default "lerp"

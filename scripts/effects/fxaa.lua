@@ -17,7 +17,7 @@ return fx.effect {
   -- No bound on the error: where two edges are equally strong, rounding decides which one is followed.
   holds = { "black", "constant", "bounded" },
   build = function(g, s, source)
-    if g.length_scale <= 0.75 then
+    if g.preview_scale <= 0.75 then
       g:skip("the preview's pixels are coarser than the steps of edges")
       return source
     end

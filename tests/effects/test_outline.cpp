@@ -2,6 +2,9 @@
 // Outline: the mask and the blend, in every mode.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "harness.h"
 #include "reference/outline.h"
 
@@ -16,13 +19,13 @@ std::string lua(const OutlineSettings& s) {
       "fx.outline {{ source = \"{}\", difference = \"{}\", depth_space = \"{}\", near = {}, far = {}, reversed_z = {}, "
       "combine = \"{}\", "
       "normal_factor = {}, width = {}, fade_distance = {}, depth_scale = {}, normal_scale = {}, divide_factor = {}, "
-      "contrast = {}, level_slopes = {}, "
+      "contrast = {}, smoothness = {}, level_slopes = {}, "
       "color = {{ {}, {}, {} }}, blend = \"{}\" }}",
       kSources[static_cast<int>(s.source)], s.difference == OutlineDifference::offset ? "offset" : "derivative",
       s.device_depth_input ? "device" : "linear", s.near, s.far, s.reversed_z,
       s.combine == OutlineCombine::weighted ? "weighted" : "max", s.normal_factor, s.width, s.fade_distance,
-      s.depth_scale, s.normal_scale, s.divide_factor, s.contrast, s.level_slopes, s.color.r, s.color.g, s.color.b,
-      s.blend == OutlineBlend::lerp ? "lerp" : "add");
+      s.depth_scale, s.normal_scale, s.divide_factor, s.contrast, s.smoothness, s.level_slopes, s.color.r, s.color.g,
+      s.color.b, s.blend == OutlineBlend::lerp ? "lerp" : "add");
 }
 
 const DoubleImage* pointer(const std::optional<DoubleImage>& image) { return image ? &*image : nullptr; }
@@ -34,8 +37,8 @@ void check(const Scene& scene, const OutlineSettings& s) {
   EXPECT_TRUE(agrees(made.pixels("outline.lines"),
                      outline_mask(made.size, pointer(scene.depth), pointer(scene.normal), s), kFullFloat, 1));
   // The mask's rounding counts times the difference of the two colours, here up to ten times as bright as the ink.
-  EXPECT_TRUE(agrees(made.result, outline(scene.source, pointer(scene.depth), pointer(scene.normal), s), 2 * kFullFloat,
-                     kRgba));
+  EXPECT_TRUE(agrees(made.result, outline(scene.source, pointer(scene.depth), pointer(scene.normal), s),
+                     (2 + 6 * s.smoothness) * kFullFloat, kRgba));
   EXPECT_TRUE(alpha_is_kept(made, scene));
   const Made fused = run_stack(lua(s), scene, Way::fused);
   EXPECT_TRUE(agrees(fused.result, from_floats(made.result.data(), made.size, 4), kFused, kRgba)) << "fused";
@@ -69,6 +72,7 @@ TEST_F(Effects, OutlineAgreesAtEverySizeAndSource) {
                                        .divide_factor = 1.5,
                                        .level_slopes = turn % 5 != 0,
                                        .contrast = 1 + 0.5 * (turn % 5),
+                                       .smoothness = 0.5 * (turn % 3),
                                        .color = {0.1, 0.02, 0.3},
                                        .blend = turn % 3 ? OutlineBlend::lerp : OutlineBlend::add});
       }
@@ -81,7 +85,8 @@ TEST_F(Effects, OutlineOfARealFrameAgrees) {
                 .fade_distance = 40,
                 .depth_scale = 4,
                 .normal_scale = 0.8,
-                .contrast = 4});
+                .contrast = 4,
+                .smoothness = 1});
   check(scene, {});
   check(scene, {.source = OutlineSource::depth, .difference = OutlineDifference::derivative, .depth_scale = 10});
 }
@@ -110,6 +115,26 @@ TEST_F(Effects, PlanesDrawNoLineHoweverSteep) {
     EXPECT_EQ(lines("", width, 59, 12), 1);
     EXPECT_EQ(lines(", level_slopes = false", width, 20, 1), 1);
   }
+}
+
+TEST_F(Effects, SmoothLinesHaveNoTeeth) {
+  // An edge that each row sees a pixel further left or right, as renderers draw those that lie across pixels.
+  Scene scene{"wall", DoubleImage(48, 48, Rgba(1, 1, 1, 1)), DoubleImage(48, 48, Rgba(5, 0, 0, 1)), {}};
+  for (int y = 0; y < 48; ++y)
+    for (int x = 24 + y % 2; x < 48; ++x) scene.depth->at(x, y).r = 8;
+  const auto most_along = [&](const char* more) {
+    const auto made =
+        run_stack(fmt::format("fx.outline {{ source = \"depth\", contrast = 5{} }}", more), scene, Way::plain).result;
+    double most = 0;
+    for (int y = 16; y < 32; ++y)
+      for (int x = 16; x < 32; ++x) {
+        const auto at = 4 * static_cast<std::size_t>(48 * y + x);
+        most = std::max<double>(most, std::abs(made[at] - made[at - 4 * 48]));
+      }
+    return most;
+  };
+  EXPECT_EQ(most_along(""), 1);
+  EXPECT_LT(most_along(", smoothness = 1"), 0.1);
 }
 
 TEST_F(Effects, OutlineFromDeviceDepthAgrees) {

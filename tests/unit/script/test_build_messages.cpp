@@ -199,10 +199,10 @@ TEST_F(BuildMessages, Inputs) {
 TEST_F(BuildMessages, TheGraphAndImages) {
   EXPECT_EQ(error("g.pass { shader = \"plain\" }"),
             "effects/probe.lua:4: error: the first argument is a table, not the graph; allowed: g:pass { … }");
-  EXPECT_EQ(
-      error("g:pas {}"),
-      "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: cryptomatte, filter, fps, frame, "
-      "frame_time, history, image, input, keep, length_scale, lookup, ocio, pass, skip, time; did you mean 'pass'?");
+  EXPECT_EQ(error("g:pas {}"),
+            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: cryptomatte, filter, fps, frame, "
+            "frame_time, history, image, input, keep, length_scale, lookup, ocio, pass, preview_scale, skip, time; did "
+            "you mean 'pass'?");
   EXPECT_EQ(error("local w = source.widht"),
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");
   EXPECT_EQ(error("source.width = 5"), "effects/probe.lua:4: error: an image cannot be changed: width = 5");

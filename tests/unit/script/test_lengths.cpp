@@ -58,6 +58,13 @@ TEST_F(Lengths, AStackMayGiveThemForOneHeight) {
   for (const double scale : {1.0, 0.25}) EXPECT_EQ(read(scale), "16 24 8 12 8 2");
 }
 
+TEST_F(Lengths, OnlyASmallerPictureIsAPreview) {
+  scene.effect("probe", "build = function(g, s, source) g:skip((\"%g\"):format(g.preview_scale)) return source end,");
+  scene.preset("local fx = require \"afterglow\"\nreturn fx.stack { reference_height = 32, fx.probe {} }");
+  EXPECT_EQ(read(1), "1");
+  EXPECT_EQ(read(0.25), "0.25");
+}
+
 TEST_F(Lengths, Messages) {
   const auto error = [&](const std::string& key) {
     scene.preset("local fx = require \"afterglow\"\nreturn fx.stack {\n  " + key + ", fx.probe {} }");
