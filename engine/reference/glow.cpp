@@ -104,6 +104,14 @@ DoubleImage glow_bright(const DoubleImage& image, double threshold, double limit
   });
 }
 
+DoubleImage through_film(const DoubleImage& light, double own) {
+  return generate(light.size(), [&](int x, int y) {
+    const Rgb c(light.at(x, y));
+    const double red = glm::max(c.r, 0.4 * luminance(c)), green = glm::min(c.g, red);
+    return Rgba(glm::mix(Rgb(red, green, glm::min(c.b, green)), c, own), 1);
+  });
+}
+
 std::vector<Rgb> exponential_weights(Size size, const Rgb& radii) {
   const double widest = glm::max(radii.r, glm::max(radii.g, radii.b));
   std::size_t n = 1;
@@ -182,7 +190,7 @@ DoubleImage rays_of(const DoubleImage& image, int count, double angle, const Rgb
 }
 
 DoubleImage halation(const DoubleImage& source, const Halation& s) {
-  const DoubleImage light = glow_half(glow_bright(source, s.threshold, s.clamp));
+  const DoubleImage light = glow_half(through_film(glow_bright(source, s.threshold, s.clamp), s.source_color));
   const auto weights = exponential_weights(source.size(), s.radius * Rgb(1, 0.6, 0.4));
   return with_light(source, glow_of(light, source.size(), weights), s.intensity * s.color);
 }

@@ -11,6 +11,8 @@ namespace afterglow::reference {
 
 /// c · max(0, min(b, limit) − t)/max(b, 1e-5), b the largest channel.
 DoubleImage glow_bright(const DoubleImage& image, double threshold, double limit);
+/// What of light comes back through the layers of a film; `own` of it keeps its own colour.
+DoubleImage through_film(const DoubleImage& light, double own);
 
 /// Weights of the levels of a glow, by channel, that fall as e^(−r/radius); they sum up to 1. Pixels of `size`.
 std::vector<Rgb> exponential_weights(Size size, const Rgb& radii);
@@ -29,6 +31,7 @@ DoubleImage rays_of(const DoubleImage& image, int count, double angle, const Rgb
 struct Halation {
   double intensity = 0.18, radius = 14, threshold = 1, clamp = 20;
   Rgb color{1, 0.28, 0.06};
+  double source_color = 0;
 };
 DoubleImage halation(const DoubleImage& source, const Halation& settings);
 

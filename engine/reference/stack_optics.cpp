@@ -33,7 +33,8 @@ DoubleImage run_halation(const DoubleImage& source, const Inputs&, const Setting
                            .radius = s.number("radius"),
                            .threshold = s.number("threshold"),
                            .clamp = s.number("clamp"),
-                           .color = s.color("color")});
+                           .color = s.color("color"),
+                           .source_color = s.number("source_color")});
 }
 
 DoubleImage run_glare(const DoubleImage& source, const Inputs&, const Settings& s) {

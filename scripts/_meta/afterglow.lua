@@ -263,6 +263,7 @@
 ---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light comes back; linear. 0…1000000, default 1
 ---@field clamp? number|afterglow.Moving  No light counts for more than this: film is exposed fully at some point; linear. 0…1000000, default 20
 ---@field color? number[]|string|afterglow.Moving  How much each layer of the film gets of it. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 0.28, 0.06}
+---@field source_color? number|afterglow.Moving  How much the glow takes the light's own colour. 0: light of any colour reaches the red layer first, and cyan signs glow red, as on film. 1: cyan signs glow green. 0…1, default 0
 
 ---Dust on the lens that lights up around bright lights.
 ---@class afterglow.settings.lens_dirt : afterglow.EntryKeys

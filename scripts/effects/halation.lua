@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 -- Halation: the red glow around highlights on film. Light that passes through the emulsion is thrown back by the film's base and exposes the
--- red-sensitive layer, which lies deepest, once more; green gets less of it and blue hardly any. The glow falls off as e^(−r/radius), narrower for
+-- red-sensitive layer, which lies deepest, once more, whatever the colour of the light; green gets less of it and blue hardly any. The glow falls off as e^(−r/radius), narrower for
 -- green and blue (measurements of the point spread of film with and without backing are in J. S. Courtney-Pratt and others; the looks of film stocks
 -- are those of Dehancer's and FilmBox's halation tools).
 local fx = require "afterglow"
@@ -19,6 +19,7 @@ return fx.effect {
     threshold = fx.float { min = 0, max = 1e6, default = 1, doc = "Brightness (largest channel) from which light comes back; linear." },
     clamp = fx.float { min = 0, max = 1e6, default = 20, doc = "No light counts for more than this: film is exposed fully at some point; linear." },
     color = fx.color { default = { 1, 0.28, 0.06 }, doc = "How much each layer of the film gets of it." },
+    source_color = fx.float { min = 0, max = 1, default = 0, doc = "How much the glow takes the light's own colour. 0: light of any colour reaches the red layer first, and cyan signs glow red, as on film. 1: cyan signs glow green." },
   },
   active = function(s)
     if s.intensity <= 0 then return false, "intensity is 0" end
@@ -35,7 +36,7 @@ return fx.effect {
   },
   build = function(g, s, source)
     local weights = glow.exponential(source, g.length_scale, { s.radius, 0.6 * s.radius, 0.4 * s.radius })
-    local light = glow.of(g, source, g.length_scale, weights, function(width, height) return glow.bright(g, source, width, height, s.threshold, s.clamp) end)
+    local light = glow.of(g, source, g.length_scale, weights, function(width, height) return glow.bright(g, source, width, height, s.threshold, s.clamp, s.source_color) end)
     local tint = {}
     for i = 1, 3 do tint[i] = math.min(s.color[i] * s.intensity, 1e6) end
     return g:pass { shader = "glow/tint", source = light, picture = source, tint = tint, name = "final" }

@@ -94,12 +94,12 @@ function glow.of(g, source, scale, weights, light)
 end
 
 -- What of `source` is brighter than the threshold, at another size; no light counts for more than the limit (none: nil). It is taken of each pixel before any mean:
--- a mean of a lamp and the night around it depends on where between pixels the lamp lies, and lamps that move would blink.
-function glow.bright(g, source, width, height, threshold, limit)
+-- a mean of a lamp and the night around it depends on where between pixels the lamp lies, and lamps that move would blink. `own`: it goes through the layers of a film, and so much of it keeps its own colour; nil: light stays as it is.
+function glow.bright(g, source, width, height, threshold, limit, own)
   local across, down = math.max(source.width // 2, 1), math.max(source.height // 2, 1)
   local halves = across >= width and down >= height and across + down < source.width + source.height
   local image = g:pass { shader = halves and "glow/bright_half" or "glow/bright", source = source, size = halves and { across, down } or nil,
-                         reach = halves and 2 or nil, threshold = threshold, limit = limit or 1e30, name = "bright" }
+                         reach = halves and 2 or nil, threshold = threshold, limit = limit or 1e30, film = own ~= nil and own < 1, own = own or 1, name = "bright" }
   return pyramids.resized(g, image, width, height, "scaled")
 end
 

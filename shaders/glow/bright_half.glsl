@@ -2,10 +2,15 @@
 // The light of the four pixels around each place above a threshold, then their bilinear mean: half the size.
 #include "lib/bright.glsl"
 
+layout(constant_id = 0) const bool film = false;
 uniform sampler2D source;
 uniform float threshold, limit;
+uniform float own;  // film: how much light keeps its own colour
 
-vec3 light_at(ivec2 pixel) { return light_above(fetch(source, pixel).rgb, threshold, limit); }
+vec3 light_at(ivec2 pixel) {
+  vec3 light = light_above(fetch(source, pixel).rgb, threshold, limit);
+  return film ? mix(through_film(light), light, own) : light;
+}
 
 vec4 sample_at(ivec2 pixel) {
   // (pixel + ½) · n_src/n_dst − ½ in whole numbers: far places have as many digits as near ones.

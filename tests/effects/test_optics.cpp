@@ -20,9 +20,11 @@ using namespace reference;
 std::string rgb(const Rgb& c) { return fmt::format("{{ {}, {}, {} }}", c.r, c.g, c.b); }
 
 EffectCase halated(const Halation& v) {
-  return {fmt::format("fx.halation {{ intensity = {}, radius = {}, threshold = {}, clamp = {}, color = {} }}",
-                      v.intensity, v.radius, v.threshold, v.clamp, rgb(v.color)),
-          [=](const Scene& s) { return halation(s.source, v); }};
+  return {
+      fmt::format(
+          "fx.halation {{ intensity = {}, radius = {}, threshold = {}, clamp = {}, color = {}, source_color = {} }}",
+          v.intensity, v.radius, v.threshold, v.clamp, rgb(v.color), v.source_color),
+      [=](const Scene& s) { return halation(s.source, v); }};
 }
 
 EffectCase glared(const Glare& v, const char* kind) {
@@ -119,7 +121,7 @@ TEST_F(Effects, RaysAreAsWideAndAsBrightAtEveryHeight) {
 TEST_F(Effects, HalationAgrees) {
   agree_everywhere({halated({.threshold = 0.3}),
                     halated({.intensity = 2, .radius = 60, .threshold = 0, .clamp = 5, .color = {0.2, 1, 3}}),
-                    halated({.radius = 0.5, .threshold = 0.5})});
+                    halated({.radius = 0.5, .threshold = 0.5, .source_color = 0.3})});
   expect_skipped("fx.halation { intensity = 0 }", "intensity is 0");
   expect_skipped("fx.halation { threshold = 9, clamp = 2 }", "clamp is not above threshold");
   expect_skipped("fx.halation { color = { 0, 0, 0 } }", "color is black");
@@ -130,7 +132,7 @@ TEST_F(Effects, HalationPassByPass) {
     const auto scene = random_scene(size, 71);
     const Made made = run_stack("fx.halation { radius = 5, threshold = 0.5 }", scene, Way::plain);
     SCOPED_TRACE(scene.name);
-    const auto light = glow_half(glow_bright(scene.source, 0.5, 20));
+    const auto light = glow_half(through_film(glow_bright(scene.source, 0.5, 20), 0));
     const auto weights = exponential_weights(size, 5.0 * Rgb(1, 0.6, 0.4));
     EXPECT_TRUE(agrees(made.pixels("halation.bright"), light, kFullFloat, kRgb));
     EXPECT_TRUE(agrees(made.pixels("halation.glow"), glow_of(light, size, weights), kFullFloat, kRgb));
@@ -144,6 +146,27 @@ TEST_F(Effects, HalationIsRedAndKeepsItsShare) {
   const double added = sum_of(result, 0) - 16;
   EXPECT_NEAR(added, 0.5 * 16, 0.02 * 16);  // a share of the light, none at the edges
   EXPECT_GT(result.at(128, 100).r, 20 * result.at(128, 100).b);
+}
+
+TEST_F(Effects, HalationIsRedWhateverGlows) {
+  const auto added = [&](const Rgb& light, const char* more) {
+    auto scene = lamp({128, 128}, 1);
+    for (auto& p : scene.source.pixels) p = Rgba(Rgb(p) * light * 4.0, 1);
+    const Made made = run_stack(fmt::format("fx.halation {{ radius = 8, threshold = 0{} }}", more), scene, Way::plain);
+    const auto result = from_floats(made.result.data(), made.size, 4);
+    return Rgb(sum_of(result, 0) - sum_of(scene.source, 0), sum_of(result, 1) - sum_of(scene.source, 1),
+               sum_of(result, 2) - sum_of(scene.source, 2));
+  };
+  for (const Rgb& light : {Rgb(0.05, 0.8, 1), Rgb(0.05, 1, 0.1), Rgb(0.1, 0.1, 1), Rgb(1, 0.2, 0.6), Rgb(1, 1, 1)}) {
+    const Rgb glow = added(light, "");
+    EXPECT_GT(glow.r, 0.01 * 4);
+    EXPECT_LT(glow.g, 0.4 * glow.r) << light.r << ' ' << light.g << ' ' << light.b;
+    EXPECT_LT(glow.b, 0.25 * glow.r);
+  }
+  // As much as ever of light that has red.
+  for (const Rgb& light : {Rgb(1, 1, 1), Rgb(1, 0.2, 0.6)})
+    EXPECT_NEAR(added(light, "").r, added(light, ", source_color = 1").r, 1e-4);
+  EXPECT_GT(added({0.05, 0.8, 1}, ", source_color = 1").g, added({0.05, 0.8, 1}, ", source_color = 1").r);
 }
 
 TEST_F(Effects, GlareAgrees) {
