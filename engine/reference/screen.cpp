@@ -114,7 +114,8 @@ DoubleImage posterize(const DoubleImage& source, const Posterize& s) {
     if (eye > 1) return c;
     const double at = eye * (s.levels - 1), below = std::floor(at);
     const double slope = glm::clamp((at - below - 0.5) / glm::max(s.softness, 1e-3) + 0.5, 0.0, 1.0);
-    const double scale = (below + slope) / (s.levels - 1) / glm::max(eye, 1e-6);
+    const double steps = s.levels - 1, lower = below > 0 ? below / steps : glm::min(eye, s.shadows / steps);
+    const double scale = glm::mix(lower, (below + 1) / steps, slope) / glm::max(eye, 1e-6);
     const double most = glm::max(c.r, glm::max(c.g, c.b));
     return glm::mix(c, c * glm::min(scale * scale, glm::max(1.0, 1 / glm::max(most, 1e-6))), s.intensity);
   });

@@ -22,7 +22,7 @@ DoubleImage crt(const DoubleImage& source, const Crt& settings);
 
 struct Posterize {
   int levels = 5;
-  double softness = 0.3, intensity = 1;
+  double softness = 0.3, intensity = 1, shadows = 0;
 };
 /// Of straight colour.
 DoubleImage posterize(const DoubleImage& source, const Posterize& settings);

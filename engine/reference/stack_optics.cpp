@@ -154,7 +154,7 @@ DoubleImage run_transition(const DoubleImage& source, const Inputs& inputs, cons
 }
 
 DoubleImage run_posterize(const DoubleImage& source, const Inputs&, const Settings& s) {
-  return posterize(source, {s.integer("levels"), s.number("softness"), s.number("intensity")});
+  return posterize(source, {s.integer("levels"), s.number("softness"), s.number("intensity"), s.number("shadows")});
 }
 
 /// Of ASCII texts, with {frame} alone filled in.

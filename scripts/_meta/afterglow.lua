@@ -374,6 +374,7 @@
 ---@class afterglow.settings.posterize : afterglow.EntryKeys
 ---@field levels? integer|afterglow.Moving  Tones from black to white. integer 2…64, default 5
 ---@field softness? number|afterglow.Moving  How much of a step is a slope: 0 hard edges, 1 one slope after the other. 0…1, default 0.3
+---@field shadows? number|afterglow.Moving  Of the first tone above black: up to here dark colours stay as they are. 0: they are black, and dark wood has black blotches. 0…1, default 0
 ---@field intensity? number|afterglow.Moving  How much of it is mixed in. 0: none. 0…1, default 1
 
 ---Streaks towards a centre, as of a zoom or of speed.

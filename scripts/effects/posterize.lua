@@ -10,6 +10,7 @@ return fx.effect {
   settings = {
     levels = fx.int { min = 2, max = 64, default = 5, doc = "Tones from black to white." },
     softness = fx.float { min = 0, max = 1, default = 0.3, doc = "How much of a step is a slope: 0 hard edges, 1 one slope after the other." },
+    shadows = fx.float { min = 0, max = 1, default = 0, doc = "Of the first tone above black: up to here dark colours stay as they are. 0: they are black, and dark wood has black blotches." },
     intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of it is mixed in. 0: none." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
@@ -17,6 +18,6 @@ return fx.effect {
   holds = { "black", "mirror", "turn_180", "turn_90", shift = 1, constant = 1e-4,
     error = { fp32 = 2e-3, fp16 = false, up_to = 4, when = function(s) return s.softness >= 0.2 and s.levels <= 16 end } },
   build = function(g, s, source)
-    return g:pass { shader = "posterize/step", source = source, steps = s.levels - 1, soft = math.max(s.softness, 1e-3), share = s.intensity }
+    return g:pass { shader = "posterize/step", source = source, steps = s.levels - 1, soft = math.max(s.softness, 1e-3), kept = s.shadows / (s.levels - 1), share = s.intensity }
   end,
 }

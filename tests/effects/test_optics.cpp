@@ -444,15 +444,36 @@ TEST_F(Effects, TransitionsGoOverToTheFrameThatIsNamed) {
 }
 
 EffectCase stepped(const Posterize& v) {
-  return {
-      fmt::format("fx.posterize {{ levels = {}, softness = {}, intensity = {} }}", v.levels, v.softness, v.intensity),
-      [=](const Scene& s) { return posterize(s.source, v); }};
+  return {fmt::format("fx.posterize {{ levels = {}, softness = {}, intensity = {}, shadows = {} }}", v.levels,
+                      v.softness, v.intensity, v.shadows),
+          [=](const Scene& s) { return posterize(s.source, v); }};
 }
 
 TEST_F(Effects, PosterizeAgrees) {
-  agree_everywhere({stepped({}), stepped({.levels = 2, .softness = 1}), stepped({.levels = 12, .intensity = 0.4})},
+  agree_everywhere({stepped({}), stepped({.levels = 2, .softness = 1}), stepped({.levels = 12, .intensity = 0.4}),
+                    stepped({.shadows = 0.7}), stepped({.levels = 2, .shadows = 1})},
                    {.full = 1e-3, .fused = 1e-4, .half = 2e-2});
   expect_skipped("fx.posterize { intensity = 0 }", "intensity is 0");
+}
+
+TEST_F(Effects, PosterizeMayKeepDarkColours) {
+  // Dark wood: half of it went black, the other half red.
+  Scene wood{"wood", DoubleImage(64, 1), {}, {}};
+  for (int x = 0; x < 64; ++x) wood.source.at(x, 0) = Rgba(Rgb(4, 1, 0.5) * (0.004 + 0.0004 * x), 1);
+  const auto range = [&](const char* more) {
+    const Made made = run_stack(fmt::format("fx.posterize {{ levels = 5{} }}", more), wood, Way::plain);
+    double least = 1, most = 0;
+    for (std::size_t x = 0; x < 64; ++x) {
+      const float* p = &made.result[4 * x];
+      EXPECT_NEAR(p[0], 4 * p[1], 1e-4);  // its hue stays
+      least = std::min<double>(least, p[0]), most = std::max<double>(most, p[0]);
+    }
+    return std::pair(least, most);
+  };
+  EXPECT_EQ(range("").first, 0);
+  const auto [least, most] = range(", shadows = 1");
+  EXPECT_NEAR(least, 4 * 0.004, 1e-4);
+  EXPECT_EQ(most, range("").second);
 }
 
 TEST_F(Effects, PosterizeLeavesFewTones) {
