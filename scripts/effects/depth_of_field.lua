@@ -29,7 +29,8 @@ return fx.effect {
   needs = { "depth" },
 
   -- Where a pixel sees nothing but the soft rims of circles, which are wide where the iris is narrow, its light is what little these weigh divided by itself.
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
+  -- Neither linear nor monotone: texels of coarse levels stand where their light lies.
+  holds = { "black", "constant", "bounded", continuous = 1,
     error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.depth_space == "linear" and s.squeeze >= 0.4 and s.squeeze <= 2.5 end } },
   build = function(g, s, source)
     local f = s.focal_length / 1000
