@@ -14,7 +14,7 @@
 #include "gpu/image.h"
 #include "image/encode.h"
 #include "image/picture.h"
-#include "image/size_limits.h"
+#include "image/reader.h"
 #include "image/srgb.h"
 
 namespace afterglow::api {

@@ -45,6 +45,7 @@ class Settings {
 struct Oracle {
   const char* effect;
   DoubleImage (*run)(const DoubleImage& source, const Inputs& inputs, const Settings& settings);
+  bool (*knows)(const Settings& settings) = nullptr;  ///< null: all that the effect takes
 };
 
 /// Grading, lens, film, blurs and edges: stack_effects.cpp.

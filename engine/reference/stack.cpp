@@ -114,7 +114,8 @@ const Oracle* oracle_of(const Entry& entry) {
 std::string effect_without_oracle(std::span<const Entry> entries) {
   for (const auto& entry : entries) {
     const bool group = entry.effect == "group" || entry.effect == "mix";
-    if (!group && !oracle_of(entry)) return entry.effect;
+    const Oracle* oracle = group ? nullptr : oracle_of(entry);
+    if (!group && (!oracle || (oracle->knows && !oracle->knows(Settings(entry))))) return entry.effect;
     if (entry.mask && !is_known(*entry.mask)) return "the mask of " + entry.effect;
   }
   return {};

@@ -157,7 +157,14 @@ DoubleImage run_posterize(const DoubleImage& source, const Inputs&, const Settin
   return posterize(source, {s.integer("levels"), s.number("softness"), s.number("intensity"), s.number("shadows")});
 }
 
-/// Of ASCII texts, with {frame} alone filled in.
+/// ASCII, with {frame} alone to be filled in.
+bool knows_text(const Settings& s) {
+  const std::string text = s.text("text");
+  for (auto at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1))
+    if (!std::string_view(text).substr(at).starts_with("{frame}")) return false;
+  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
 DoubleImage run_burn_in(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
   std::string text = s.text("text");
   constexpr std::string_view kFrame = "{frame}";
@@ -176,7 +183,7 @@ DoubleImage run_burn_in(const DoubleImage& source, const Inputs& inputs, const S
 }
 
 constexpr Oracle kOpticOracles[] = {
-    {"burn_in", run_burn_in},
+    {"burn_in", run_burn_in, knows_text},
     {"crt", run_crt},
     {"depth_fog", run_depth_fog},
     {"glare", run_glare},

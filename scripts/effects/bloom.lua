@@ -162,7 +162,7 @@ return fx.effect {
     if s.clamp > 0 then image = g:pass { shader = "bloom/hold", source = image, most = most, name = "hold" } end
     local enlarged = s.fade_fireflies and source.height < full_height
     if enlarged then  -- once they are enlarged, single pixels are none any more
-      image = g:pass { shader = "bloom/fireflies", source = image, size = image, knee = knee, reach = 3, name = "fireflies" }
+      image = g:pass { shader = "bloom/fireflies", source = image, size = image, knee = knee, reach = 3, name = "prefilter" }
       image = pyramids.resized(g, image, sizes[start][1], sizes[start][2], "scaled")
     elseif start == 1 then
       image = pyramids.resized(g, image, full_width, full_height, "scaled")

@@ -28,11 +28,16 @@ std::vector<float> interleaved_floats(const DoubleImage& image) {
   return {doubles.begin(), doubles.end()};
 }
 
+/// A picture that is enlarged is filtered at its own size.
+bool fades_first(const BloomSettings& s, Size picture) {
+  return s.fade_fireflies && s.reference_height > picture.height;
+}
+
 /// The image of the light that blooms, at half of the size that the glow is made at.
-std::string light_of(const Made& made) {
-  if (!made.has("bloom.fireflies")) return "bloom.prefilter";
-  std::string light = "bloom.fireflies";  // of a picture that is enlarged
-  for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) light = bloom_image("scaled", i);
+std::string light_of(const Made& made, const BloomSettings& s) {
+  std::string light = "bloom.prefilter";
+  if (fades_first(s, made.size))
+    for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) light = bloom_image("scaled", i);
   return light;
 }
 
@@ -42,13 +47,13 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
   threshold.clamp = s.clamp;
   DoubleImage picture = made.has("bloom.hold") ? made.image("bloom.hold") : scene.source;
   const Size full = s.reference_height > 0 ? bloom_scaled_size(picture.size(), s.reference_height) : picture.size();
-  const std::string light = light_of(made);
-  if (made.has("bloom.fireflies")) {
-    EXPECT_TRUE(agrees(made.pixels("bloom.fireflies"), bloom_fade_fireflies(picture, picture.size(), threshold),
+  const std::string light = light_of(made, s);
+  if (fades_first(s, made.size)) {
+    EXPECT_TRUE(agrees(made.pixels("bloom.prefilter"), bloom_fade_fireflies(picture, picture.size(), threshold),
                        kFullFloat, kRgb))
         << "fireflies";
     EXPECT_TRUE(agrees(made.pixels(light),
-                       bloom_scaled(made.image("bloom.fireflies"), {full.width / 2, full.height / 2}), kFullFloat,
+                       bloom_scaled(made.image("bloom.prefilter"), {full.width / 2, full.height / 2}), kFullFloat,
                        kRgb))
         << "scaled";
   } else {
@@ -93,8 +98,8 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
 }
 
 /// Every image of the device against that of the oracle's own pyramid.
-void check_end_to_end(const Made& made, const BloomImages& expected) {
-  EXPECT_TRUE(agrees(made.pixels(light_of(made)), expected.prefilter, kFullFloat, kRgb));
+void check_end_to_end(const Made& made, const BloomSettings& settings, const BloomImages& expected) {
+  EXPECT_TRUE(agrees(made.pixels(light_of(made, settings)), expected.prefilter, kFullFloat, kRgb));
   for (std::size_t i = 0; i < expected.vertical.size(); ++i) {
     EXPECT_TRUE(agrees(made.pixels(bloom_image("horizontal", i)), expected.horizontal[i], kFullFloat, kRgb))
         << "horizontal " << i;
@@ -122,7 +127,7 @@ void check(const Scene& scene, const BloomSettings& settings) {
     return;
   }
   check_each_pass(made, scene, settings);
-  check_end_to_end(made, expected);
+  check_end_to_end(made, settings, expected);
   const Made fused = run_stack(lua(settings), scene, Way::fused);
   EXPECT_TRUE(agrees(fused.result, from_floats(made.result.data(), made.size, 4), kFused, kRgba)) << "fused";
 }

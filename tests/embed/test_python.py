@@ -357,7 +357,8 @@ def test_set_while_an_edit_is_broken(folder, device):
 
 
 def test_depth(device):
-    stack = afterglow.Stack("ink_outline", device=device)
+    text = 'local fx = require "afterglow" return fx.stack { fx.outline { source = "mixed", combine = "max" } }'
+    stack = afterglow.Stack("lines.lua", text=text, device=device)
     source = np.full((16, 16, 3), 0.5, np.float32)
     depth = np.full((16, 16), 5, np.float32)
     depth[4:12, 4:12] = 1

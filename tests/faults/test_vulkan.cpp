@@ -55,7 +55,7 @@ TEST_F(VulkanFault, PlaybackWithoutAWindow) {
   make_exr("in.0002.exr");
   const std::vector<std::string> command{"play",    neon_night(), "in.%04d.exr",  "--headless",
                                          "--count", "4",          "--screenshot", "shot.png"};
-  EXPECT_GT(strike(command, {"shot.png"}, "device", 20), 2);
+  EXPECT_GT(strike(command, {"shot.png"}, "device", 30), 2);
   EXPECT_GT(strike(command, {"shot.png"}, "lost", 8), 2);
 }
 

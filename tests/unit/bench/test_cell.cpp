@@ -9,6 +9,7 @@
 #include "bench/cell.h"
 #include "bench/operations.h"
 #include "bench/picture.h"
+#include "core/file.h"
 
 namespace afterglow::bench {
 namespace {
@@ -36,6 +37,15 @@ class Cells : public testing::Test {
     std::ofstream(folder_ / "look.lua") << "local fx = require \"afterglow\"\nreturn fx.stack { " << entries << " }\n";
     return folder_ / "look.lua";
   }
+  /// A preset that comes along, at lengths of the picture itself: the oracle knows no others.
+  fs::path unscaled(const std::string& name) {
+    std::string text = read_file(fs::path(AFTERGLOW_PROJECT_FOLDER "/presets") / name).value();
+    const auto begin = text.find("  reference_height = 1080,\n");
+    if (begin != std::string::npos) text.erase(begin, text.find('\n', begin) + 1 - begin);
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
   Result<Cell> measure(const fs::path& preset, std::vector<Variant> variants) {
     return measure_cell(
         *device_, {.preset = preset, .base = {}, .variants = std::move(variants), .picture = &picture_, .repeat = 2},
@@ -55,7 +65,7 @@ TEST_F(Cells, EveryChoiceGivesTheTruth) {
       choice.fusion = fusion;
       variants.push_back({execution_name(choice), choice, {}, {}});
     }
-  const auto cell = measure(AFTERGLOW_PROJECT_FOLDER "/presets/neon_night.lua", variants);
+  const auto cell = measure(unscaled("neon_night.lua"), variants);
   ASSERT_TRUE(cell) << cell.error().text();
   EXPECT_EQ(cell->truth, "double precision");
   ASSERT_EQ(cell->points.size(), variants.size());
@@ -75,20 +85,21 @@ TEST_F(Cells, EveryShippedLookAgreesWithTheWholeOracle) {
   int with_oracle = 0;
   for (const auto& entry : fs::directory_iterator(AFTERGLOW_PROJECT_FOLDER "/presets")) {
     if (entry.path().extension() != ".lua") continue;
-    const auto cell = measure(entry.path(), {{"chosen", {}, {}, {}}});
+    const auto cell = measure(unscaled(entry.path().filename().string()), {{"chosen", {}, {}, {}}});
     ASSERT_TRUE(cell) << cell.error().text();
     // These read between pixels, at positions that are sums of floats: one near 100 is known to 2^-18.
     const std::string name = entry.path().stem().string();
-    const bool between = name == "anamorphic_night" || name == "vhs_tape" || name == "night_vision";
+    const bool between =
+        name == "anamorphic_night" || name == "vhs_tape" || name == "night_vision" || name == "crt_arcade";
     // AgX's punchy look raises rounding by its power and its saturation; tone_mapping promises 5e-5 of it.
-    const bool punchy = name == "neon_additive" || name == "toon";
+    const bool punchy = name == "neon_additive" || name == "anime_night";
     EXPECT_LE(cell->points.at(0).quality->error.percentile, between  ? 5e-4
                                                             : punchy ? 5e-5
                                                                      : 1e-5)
         << entry.path() << " against " << cell->truth;
     with_oracle += cell->truth == "double precision";
   }
-  EXPECT_GE(with_oracle, 9);
+  EXPECT_GE(with_oracle, 20);
 }
 
 TEST_F(Cells, HeadsAreThreePassesALevelAndOne) {
