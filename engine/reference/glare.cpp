@@ -5,6 +5,7 @@
 
 #include "reference/box_bloom.h"
 #include "reference/grain.h"
+#include "reference/image_overlay.h"
 #include "reference/lens.h"
 #include "reference/resample.h"
 
@@ -48,6 +49,14 @@ double smooth_noise(double x, double y, const LensDirt& s, std::uint32_t number)
   return (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
 }
 
+DoubleImage through_texture(const DoubleImage& source, const DoubleImage& light, const LensDirt& s) {
+  const DoubleImage over = covering(*s.texture, source.size());
+  return generate(source.size(), [&](int x, int y) {
+    const Rgba& p = source.at(x, y);
+    return Rgba(Rgb(p) + s.intensity * Rgb(over.at(x, y)) * Rgb(light.at(x, y)), p.a);
+  });
+}
+
 }  // namespace
 
 DoubleImage anamorphic_streaks(const DoubleImage& source, const AnamorphicStreaks& s) {
@@ -85,6 +94,7 @@ DoubleImage lens_dirt(const DoubleImage& source, const LensDirt& s) {
   DoubleImage light = bright_half(source, s.threshold);
   while (glm::min(light.width, light.height) >= 16) light = resample(light, halved(light.size()), tent);
   const Filter enlarge{.interpolation = Interpolation::cubic_bspline};
+  if (s.texture) return through_texture(source, resample(light, source.size(), enlarge), s);
   const Size small{(source.width + 3) / 4, (source.height + 3) / 4};
   light = resample(light, small, enlarge);
   const DoubleImage spots = lens_dirt_spots(small, glm::max(s.size * source.height / 4, 1.0), s);

@@ -17,6 +17,7 @@ DoubleImage anamorphic_streaks(const DoubleImage& source, const AnamorphicStreak
 struct LensDirt {
   double intensity = 1, threshold = 1, density = 0.4, size = 0.06;
   std::uint32_t seed = 0;
+  const DoubleImage* texture = nullptr;  ///< of the dirt, in place of spots
 };
 /// Opacity of the dirt, 0…1, in all channels; the larger cells are `cell` pixels wide.
 DoubleImage lens_dirt_spots(Size size, double cell, const LensDirt& settings);

@@ -102,19 +102,21 @@ constexpr Oracle kOracles[] = {
     {"color_blit", run_color_blit}, {"outline", run_outline},     {"tone_mapping", run_tone_mapping},
 };
 
-const Oracle* oracle_of(const Entry& entry) {
+const Oracle* oracle_of(const std::string& effect) {
   for (const std::span<const Oracle> oracles : {std::span<const Oracle>(kOracles), more_oracles(), optic_oracles()})
     for (const Oracle& oracle : oracles)
-      if (entry.effect == oracle.effect) return &oracle;
+      if (effect == oracle.effect) return &oracle;
   return nullptr;
 }
 
 }  // namespace
 
+bool has_oracle(const std::string& effect) { return oracle_of(effect) != nullptr; }
+
 std::string effect_without_oracle(std::span<const Entry> entries) {
   for (const auto& entry : entries) {
     const bool group = entry.effect == "group" || entry.effect == "mix";
-    const Oracle* oracle = group ? nullptr : oracle_of(entry);
+    const Oracle* oracle = group ? nullptr : oracle_of(entry.effect);
     if (!group && (!oracle || (oracle->knows && !oracle->knows(Settings(entry))))) return entry.effect;
     if (entry.mask && !is_known(*entry.mask)) return "the mask of " + entry.effect;
   }
@@ -138,7 +140,7 @@ DoubleImage run(const DoubleImage& source, const Inputs& inputs, std::span<const
       made = composite(run(image, inputs, members.first(middle)), run(image, inputs, members.subspan(middle)),
                        Settings(entry).number("amount"), "normal", nullptr);
     else
-      made = oracle_of(entry)->run(image, inputs, Settings(entry));
+      made = oracle_of(entry.effect)->run(image, inputs, Settings(entry));
     const auto mask = entry.mask ? mask_of(image, inputs, *entry.mask) : std::vector<double>();
     if (entry.mask || entry.opacity != 1 || entry.blend != "normal")
       made = composite(image, made, entry.opacity, entry.blend, entry.mask ? &mask : nullptr);

@@ -48,7 +48,10 @@ struct Inputs {
   std::map<std::string, const DoubleImage*> layers = {};  ///< by the names that effects ask by, without "layer:"
 };
 
-/// The first effect or mask that no oracle knows; empty when all are known.
+/// Is there an oracle of the effect, for some of its settings at least?
+bool has_oracle(const std::string& effect);
+
+/// The first effect or mask that no oracle knows with its settings; empty when all are known.
 std::string effect_without_oracle(std::span<const Entry> entries);
 
 /// The result of the stack, alpha that of the source. `entries` are those that run, in order; every effect is known,

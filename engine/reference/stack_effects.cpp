@@ -268,7 +268,7 @@ constexpr Oracle kMoreOracles[] = {
     {"film_grain", run_film_grain},
     {"fxaa", run_fxaa},
     {"glitch", run_glitch},
-    {"lens_dirt", run_lens_dirt},
+    {"lens_dirt", run_lens_dirt, [](const Settings& s) { return s.text("texture").empty(); }},
     {"lens_distortion", run_lens_distortion},
     {"lift_gamma_gain", run_lift_gamma_gain},
     {"motion_blur", run_motion_blur},

@@ -64,8 +64,7 @@ namespace {
 void warn_without_oracle(const EffectSchema& effect, Diagnostics& diagnostics) {
   const auto of_error = [](const InvariantSchema& hold) { return hold.stated.name == "error"; };
   if (std::ranges::none_of(effect.invariants, of_error)) return;
-  const reference::Entry entry{.effect = effect.name, .settings = {}};
-  if (reference::effect_without_oracle({&entry, 1}).empty()) return;
+  if (reference::has_oracle(effect.name)) return;
   diagnostics.warn(fmt::format(
       "effect '{}' promises an error (`holds`), but there is no oracle of it: nothing checks that", effect.name));
 }

@@ -265,6 +265,16 @@
 ---@field color? number[]|string|afterglow.Moving  How much each layer of the film gets of it. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 0.28, 0.06}
 ---@field source_color? number|afterglow.Moving  How much the glow takes the light's own colour. 0: light of any colour reaches the red layer first, and cyan signs glow red, as on film. 1: cyan signs glow green. 0…1, default 0
 
+---A picture from a file over the picture: a logo, dust, a leak of light.
+---@class afterglow.settings.image_overlay : afterglow.EntryKeys
+---@field file? string|afterglow.OfTime  The picture, with its alpha. None: no effect. Numbered ones: `function(t) return ("leak.%04d.png"):format(t.frame) end`. default ""
+---@field blend? "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"|afterglow.OfTime  How it is laid over. add, screen: light on black; multiply: shade on white. default "normal"
+---@field fit? "cover"|"contain"|"stretch"|"tile"|afterglow.OfTime  contain: as large as fits in; cover: so that nothing is left free; stretch: the shape of the picture; tile: in its own size, again and again. default "contain"
+---@field size? number|afterglow.Moving  Factor of the size that fit gives. 0.1 of contain: a logo. 0.001…100, default 1
+---@field position? number[]|afterglow.Moving  Where it is: {0, 0} in the upper left corner, {1, 1} in the lower right. Held to whole pixels, so that what is sharp stays sharp. {x, y}, each 0…1, default {0.5, 0.5}
+---@field margin? number|afterglow.Moving  Kept free at the picture's border, as a share of its height. Not of tiles. 0…0.4, default 0
+---@field intensity? number|afterglow.Moving  Factor of its light. 0…100, default 1
+
 ---Dust on the lens that lights up around bright lights.
 ---@class afterglow.settings.lens_dirt : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Factor of the light that the dirt scatters. 0: none. 0…100, default 1
@@ -272,6 +282,7 @@
 ---@field density? number|afterglow.Moving  How much dirt there is. 0: none. 0…1, default 0.4
 ---@field size? number|afterglow.Moving  Diameter of the largest spots, as a share of the picture's height. 0.005…0.5, default 0.06
 ---@field seed? integer|afterglow.Moving  Another number, another lens. integer ≥ 0, default 0
+---@field texture? string|afterglow.OfTime  A picture of the dirt, white on black, in place of what density, size and seed make; so large that it covers the picture. default ""
 
 ---Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
 ---@class afterglow.settings.lens_distortion : afterglow.EntryKeys
@@ -560,6 +571,7 @@
 ---@field glare fun(settings: afterglow.settings.glare): afterglow.Entry  Stars, streaks or a foggy glow around bright lights.
 ---@field glitch fun(settings: afterglow.settings.glitch): afterglow.Entry  Scan lines that jump, a shaking picture, colours that part.
 ---@field halation fun(settings: afterglow.settings.halation): afterglow.Entry  The red and orange glow around highlights on film.
+---@field image_overlay fun(settings: afterglow.settings.image_overlay): afterglow.Entry  A picture from a file over the picture: a logo, dust, a leak of light.
 ---@field lens_dirt fun(settings: afterglow.settings.lens_dirt): afterglow.Entry  Dust on the lens that lights up around bright lights.
 ---@field lens_distortion fun(settings: afterglow.settings.lens_distortion): afterglow.Entry  Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
 ---@field lens_flare fun(settings: afterglow.settings.lens_flare): afterglow.Entry  Ghosts, a halo and a starburst from the brightest lights.

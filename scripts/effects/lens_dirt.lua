@@ -1,9 +1,10 @@
 -- SPDX-License-Identifier: MIT
 -- Lens dirt: dust and smudges on the front glass, seen where bright light falls through them. The light is a wide blur of what exceeds a
--- threshold; the dirt is made of smudges and of grains at random places instead of read from a picture. It is out of focus, and the light behind
+-- threshold; the dirt is made of smudges and of grains at random places, or is a picture of yours. Made dirt is out of focus, and the light behind
 -- it wide: both are made at a quarter of the size.
 local fx = require "afterglow"
 local glow = require "lib.glow"
+local placed = require "lib.placed"
 local pyramids = require "lib.pyramid"
 
 return fx.effect {
@@ -16,10 +17,11 @@ return fx.effect {
     density = fx.float { min = 0, max = 1, default = 0.4, doc = "How much dirt there is. 0: none." },
     size = fx.float { min = 0.005, max = 0.5, default = 0.06, doc = "Diameter of the largest spots, as a share of the picture's height." },
     seed = fx.int { min = 0, default = 0, doc = "Another number, another lens." },
+    texture = fx.file { extensions = { "png", "exr", "tif", "tiff", "hdr", "jpg", "jpeg", "webp" }, doc = "A picture of the dirt, white on black, in place of what density, size and seed make; so large that it covers the picture." },
   },
   active = function(s)
     if s.intensity <= 0 then return false, "intensity is 0" end
-    return s.density > 0, "density is 0"
+    return s.density > 0 or s.texture ~= "", "density is 0"
   end,
   holds = { "black", "monotone", continuous = function(s) return 1 + s.intensity end,
     -- Where a spot begins, its opacity is a small difference of distances (3e-6 of it are rounding), and the light may be strong.
@@ -34,6 +36,13 @@ return fx.effect {
     local image = glow.bright(g, source, sizes[start][1], sizes[start][2], s.threshold)
     for i = start + 1, #sizes do
       image = g:filter { source = image, size = sizes[i], filter = fx.filters.tent(), name = ("down[%d]"):format(i - 1) }
+    end
+    if s.texture ~= "" then
+      local room = { source.width, source.height }
+      local size, dirt = placed.sized(g, g:image { file = s.texture }, room, "cover", 1)
+      local light = g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "light" }
+      return g:pass { shader = "lens_dirt/through", source = light, high = source, dirt = dirt, intensity = s.intensity,
+                      corner = placed.corner(room, size, { 0.5, 0.5 }, 0), extent = size, name = "final" }
     end
     -- A preview's dirt is made in pixels as large as the delivered picture's are in its own.
     local factor = math.max(1, math.floor(4 * g.length_scale + 0.5))

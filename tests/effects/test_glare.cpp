@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cases.h"
+#include "files.h"
 #include "reference/glare.h"
 
 namespace afterglow {
@@ -46,6 +47,16 @@ TEST_F(Effects, LensDirtAgrees) {
                    {.full = 2e-3, .fused = 2e-4, .spikes = false});  // hard rims of specks, times light
   expect_skipped("fx.lens_dirt { intensity = 0 }", "intensity is 0");
   expect_skipped("fx.lens_dirt { density = 0 }", "density is 0");
+}
+
+TEST_F(Effects, LensDirtMayBeAPicture) {
+  for (const Size size : {Size{7, 5}, Size{301, 190}}) {
+    const DoubleImage dirt = write_test_picture("dirt.exr", size);
+    agree_everywhere(
+        {{"fx.lens_dirt { texture = \"dirt.exr\", density = 0, threshold = 0.5, intensity = 2 }",
+          [&](const Scene& s) { return lens_dirt(s.source, {.intensity = 2, .threshold = 0.5, .texture = &dirt}); }}},
+        kBetweenPixels);
+  }
 }
 
 TEST_F(Effects, DirtComesBitByBit) {
