@@ -103,7 +103,7 @@ std::vector<std::string> shadow_notes(const Look& look) {
   for (const auto& pass : look.build.graph.passes)
     for (const auto& name : shaders_of(pass)) {
       if (!seen.insert("shader " + name).second) continue;
-      const auto files = look.shaders->path().find_shader(name + ".glsl");
+      const auto files = look.shaders->path().find_shader(name + ".glsl");  // none: it is its folder's own
       for (std::size_t i = 1; i < files.size(); ++i)
         if (std::error_code none;
             !std::filesystem::equivalent(files[0], files[i], none))  // a folder may be there twice

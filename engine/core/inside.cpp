@@ -2,6 +2,7 @@
 #include "core/inside.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <system_error>
 
@@ -28,10 +29,8 @@ std::vector<fs::path> own_first(std::vector<fs::path> folders, const fs::path& f
     const fs::path normal = folder.lexically_normal();
     return std::distance(normal.begin(), normal.end());
   };
-  auto own = folders.end();
-  for (auto folder = folders.begin(); folder != folders.end(); ++folder)
-    if (is_named_in(file, *folder) && (own == folders.end() || depth(*folder) > depth(*own))) own = folder;
-  if (own != folders.end()) std::rotate(folders.begin(), own, own + 1);
+  const auto others = std::ranges::stable_partition(folders, [&](const auto& at) { return is_named_in(file, at); });
+  std::ranges::stable_sort(folders.begin(), others.begin(), std::greater(), depth);
   return folders;
 }
 

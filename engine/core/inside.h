@@ -14,7 +14,7 @@ bool lies_in(const std::filesystem::path& file, const std::filesystem::path& fol
 /// The same by their names alone: nothing is looked at, no link followed.
 bool is_named_in(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-/// The folders, the one that `file` is named in before all others; of several the deepest. The others stay in order.
+/// The folders, those that `file` is named in before all others, the deepest first. The others stay in order.
 std::vector<std::filesystem::path> own_first(std::vector<std::filesystem::path> folders,
                                              const std::filesystem::path& file);
 

@@ -53,7 +53,9 @@ void add_packs(SearchPath& path, const fs::path& folder) {
     if (is_zip(it->path()) || fs::is_directory(it->path(), ignored)) packs.push_back(it->path());
   }
   std::sort(packs.begin(), packs.end());
+  const auto before = path.user.size();
   for (const auto& pack : packs) add_pack(path, pack);
+  path.packs.insert(path.user.begin() + static_cast<std::ptrdiff_t>(before), path.user.end());
 }
 
 // A folder and the packs in it; packs in packs are not looked for.
@@ -75,12 +77,27 @@ std::vector<fs::path> SearchPath::find_script(const std::string& name, const std
 
 std::vector<fs::path> SearchPath::find_shader(const std::string& name, const fs::path& from) const {
   std::vector<fs::path> folders, hits;
-  for (const auto& root : user) folders.push_back(root / "shaders");
+  const auto add = [&](bool of_packs) {
+    for (const auto& root : user)
+      if (packs.contains(root) == of_packs) folders.push_back(root / "shaders");
+  };
+  add(false);
   if (!installation.empty()) folders.push_back(installation / "shaders");
+  add(true);
   if (!from.empty()) folders = own_first(std::move(folders), from);
   for (const auto& folder : folders)
     if (is_file(folder / name, record.get())) hits.push_back(folder / name);
   return hits;
+}
+
+std::vector<fs::path> SearchPath::folders_of(const fs::path& script) const {
+  std::vector<fs::path> folders = user;
+  folders.push_back(installation);
+  folders = own_first(std::move(folders), script);
+  const auto end = std::ranges::find_if(
+      folders, [&](const auto& folder) { return folder == installation || !is_named_in(script, folder); });
+  folders.erase(end, folders.end());
+  return folders;
 }
 
 std::vector<fs::path> SearchPath::asset_folders() const {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,14 +27,18 @@ struct SearchPath {
   std::shared_ptr<FileRecord> record = {};
   /// Shaders that were made for the preset that this path is of; they go before those of files. Null: none.
   std::shared_ptr<MadeShaders> made = {};
+  std::set<std::filesystem::path> packs = {};  ///< those of `user` that a folder's packs/ holds
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const { return find_script(name, "effects"); }
   /// The same in folders of another name: `masks/NAME.lua`, `scripts/masks/NAME.lua`.
   std::vector<std::filesystem::path> find_script(const std::string& name, const std::string& folder) const;
-  /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first. Of the file that asks for
-  /// it (`from`) the own folder goes before all others.
+  /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first: what lies in packs/ comes
+  /// behind the installation, so that a pack changes no effect but its own. Of the file that asks for it (`from`) the
+  /// own folder goes before all others.
   std::vector<std::filesystem::path> find_shader(const std::string& name, const std::filesystem::path& from = {}) const;
+  /// The folders of `user` that a script lies in, the deepest first; none of scripts of the installation.
+  std::vector<std::filesystem::path> folders_of(const std::filesystem::path& script) const;
   /// Folders in which files are found that scripts name, like "luts/film.cube"; those of the installation lie in
   /// assets/.
   std::vector<std::filesystem::path> asset_folders() const;

@@ -37,6 +37,18 @@ const std::pair<std::string, SettingValue>* setting_of(const Runtime& runtime, c
   return found;
 }
 
+/// The script that gives a file's name: the one that sets the setting of this value, else the one that asks.
+std::string script_of(lua_State* lua, const std::string& name) {
+  const Runtime& runtime = Runtime::of(lua);
+  if (const auto* setting = setting_of(runtime, name)) {
+    const auto& named_in = runtime.graph->entry().named_in;
+    const auto script = named_in.find(setting->first);
+    return script == named_in.end() ? "" : script->second;
+  }
+  const Location caller = runtime.box->caller(lua);
+  return caller.source < 0 ? "" : runtime.box->sources()[static_cast<std::size_t>(caller.source)].path;
+}
+
 /// Files with the same ending near where the name would be, for "did you mean".
 std::string nearest_file(const std::vector<fs::path>& roots, const std::string& name) {
   const fs::path folder = fs::path(name).parent_path();
@@ -167,23 +179,29 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     runtime.depends.files.emplace(name, "");
     return name;
   }
-  if (const auto known = runtime.assets.found.find(name); known != runtime.assets.found.end()) {
-    runtime.depends.files.emplace(known->second, name);
-    return known->second;
-  }
+  const auto own = runtime.path.folders_of(script_of(lua, name));
+  const auto depend = [&](const fs::path& file) {
+    // Along the path another one of that name may be found: then it is the file itself that counts.
+    const bool is_first = own.empty() || runtime.path.find_asset(name) == file;
+    runtime.depends.files.emplace(file, is_first ? name : "");
+    return file;
+  };
+  const auto key = std::pair(name, own.empty() ? fs::path() : own.front());
+  if (const auto known = runtime.assets.found.find(key); known != runtime.assets.found.end())
+    return depend(known->second);
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
   if (!is_safe_entry(name, 8))
     fail_at(lua, what, {"file", name, "leads out of the folders that scripts may read", kAllowed, {}});
-  const auto roots = runtime.path.asset_folders();
+  auto roots = runtime.path.asset_folders();
+  if (!own.empty()) roots = own_first(std::move(roots), own.front() / name);
   for (const auto& root : roots) {
     const fs::path file = root / name;
     if (!is_file(file, runtime.path.record.get())) continue;
-    const bool own = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
-    if (own && !lies_in(file, root))
+    const bool of_user = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
+    if (of_user && !lies_in(file, root))
       fail_at(lua, what, {"file", name, fmt::format("is a link that leads out of {}", root.string()), kAllowed, {}});
-    runtime.depends.files.emplace(file, name);
-    return runtime.assets.found[name] = file;
+    return depend(runtime.assets.found[key] = file);
   }
   fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
 }

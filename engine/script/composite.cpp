@@ -34,6 +34,7 @@ void settle(lua_State* lua, MaskRun& mask, const BuildContext& context, EntryHis
     SettingHistory of = history_of(lua, setting, run.sources[i], schema.name + "." + setting.name, context);
     if (of.overridden) of.value = *of.overridden;
     settings.emplace_back(setting.name, of.value);
+    note_named_in(run.entry, of, schema);
     of.name = mask.part + "." + setting.name;
     history.composition.push_back(std::move(of));
   }

@@ -164,15 +164,17 @@ ImageRef GraphBuilder::data(const std::string& name, std::shared_ptr<const Image
 ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) {
   const std::string last = request.shader.substr(request.shader.rfind('/') + 1);
   Pass pass = start(last, request.name, place);
-  const auto shader = find_shader(pass, request.shader, "shader");
+  pass.shader = shaders_.own_name(request.shader, place.file);
+  const auto shader = find_shader(pass, pass.shader, "shader");
   const ShaderInterface& interface = shader->interface;
   if (shader->level_line)
     warnings_.push_back(fmt::format("{}:{}: a level of an image that is not 0 is read as level 0: images have one",
                                     shader->path.string(), *shader->level_line));
   pass.kind = interface.kind;
-  pass.shader = request.shader;
-  if (!request.by_workgroups.empty()) check_workgroups(pass, request, interface);
-  pass.by_workgroups = request.by_workgroups;
+  if (!request.by_workgroups.empty()) {
+    pass.by_workgroups = shaders_.own_name(request.by_workgroups, place.file);
+    check_workgroups(pass, request, interface);
+  }
   pass.reach = request.reach;
   if (straight_ && pass.kind != PassKind::pixel)
     fail(pass, "alpha = \"straight\" is for effects whose shaders are pixel shaders (apply)", {"shader"});
@@ -182,7 +184,7 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
     fail(pass, "a pixel shader reads its own pixel alone; leave out reach", {"reach"});
   if (pass.reach && !(*pass.reach >= 0 && *pass.reach <= kMaxSide))
     fail(pass, fmt::format("reach = {} is out of range", *pass.reach), {"reach"}, fmt::format("0…{}", kMaxSide));
-  bind(pass, request, interface);
+  bind(pass, request, *shader);
   const Size size = target_size(pass, request);
   for (const auto& input : pass.inputs) {
     const Size& given = graph_.images[static_cast<std::size_t>(input.image)].size;
@@ -222,7 +224,7 @@ std::optional<std::string> GraphBuilder::fixed_alpha(const ImageRef& made) const
 void GraphBuilder::check_workgroups(const Pass& pass, const PassRequest& request,
                                     const ShaderInterface& interface) const {
   const KeyPath key{"compute"};
-  const auto other = find_shader(pass, request.by_workgroups, "compute");
+  const auto other = find_shader(pass, pass.by_workgroups, "compute");
   if (interface.kind != PassKind::sample)
     fail(pass,
          fmt::format("compute is another way of a sample shader; '{}' is a {} shader", request.shader,
@@ -250,7 +252,8 @@ void GraphBuilder::check_workgroups(const Pass& pass, const PassRequest& request
          key, join(ours));
 }
 
-void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const {
+void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderSource& shader) const {
+  const ShaderInterface& interface = shader.interface;
   const bool pixel = interface.kind == PassKind::pixel;
   // Inputs in the shader's order, the colour of a pixel shader first, whatever order the script's table has.
   std::vector<std::string> names;
@@ -261,7 +264,8 @@ void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderInte
     if (std::find(names.begin(), names.end(), argument.name) == names.end()) {
       names.insert(names.end(), pass_keys().begin(), pass_keys().end());
       fail(pass,
-           fmt::format("shader '{}' has no input or parameter '{}'", request.shader, tidy_message(argument.name, 60)),
+           fmt::format("shader '{}' has no input or parameter '{}' ({})", request.shader,
+                       tidy_message(argument.name, 60), shader.path.string()),
            {argument.name}, join(names), nearest_name(argument.name, names));
     }
   const auto given = [&](const std::string& name) -> const Argument* {

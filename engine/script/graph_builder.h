@@ -141,7 +141,7 @@ class GraphBuilder {
                          std::string nearest = {}) const;
   std::shared_ptr<const ShaderSource> find_shader(const Pass& pass, const std::string& name, const char* key) const;
   void check_workgroups(const Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
-  void bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
+  void bind(Pass& pass, const PassRequest& request, const ShaderSource& shader) const;
   void bind_image(Pass& pass, const Argument& argument, bool pixelwise) const;
   void bind_param(Pass& pass, const Argument& argument, const ShaderParam& param) const;
   static std::vector<double> rows_for(const Argument& argument, const ShaderParam& param,

@@ -73,6 +73,8 @@ struct StackEntry {
   std::string overtakes = {};  ///< the first entry of its list that is written above it and runs behind it; empty: none
   /// All of them, in the schema's order.
   std::vector<std::pair<std::string, SettingValue>> settings;
+  /// Of settings that name files: the script that gives the name, whose folder of the search path goes before others.
+  std::map<std::string, std::string> named_in = {};
   std::vector<std::string> changed;  ///< names of those that the preset or an override set; "opacity", "blend", "mask"
   std::string file;                  ///< where the preset names the effect
   int line = 0;

@@ -92,6 +92,18 @@ SettingHistory history_of(lua_State* lua, const SettingSchema& schema, const Set
   return history;
 }
 
+void note_named_in(StackEntry& entry, const SettingHistory& setting, const EffectSchema& effect,
+                   const std::vector<VolumeState>& volumes) {
+  const SettingType type = setting.value.type;
+  if ((type != SettingType::file && type != SettingType::text) || setting.value.choice.empty()) return;
+  std::string script = setting.preset ? (setting.place ? setting.place->file : "") : effect.file.string();
+  for (const VolumeStep& step : setting.volumes)
+    for (const VolumeState& volume : volumes)
+      if (volume.name == step.volume && step.result == step.value) script = volume.file;
+  if (setting.overridden) script.clear();
+  entry.named_in[setting.name] = script;
+}
+
 bool may_change(const EntryRun& run, const Surroundings& surroundings) {
   const auto moves = [](const SettingSource& source) { return source.preset && source.preset->moves(); };
   const auto aimed_at = [&](const DeclaredVolume& volume) {
@@ -121,9 +133,11 @@ Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const 
     settle_composition(lua, runs[i], context, out.entries[i]);
     auto& settings = runs[i].entry.settings;
     settings.clear();
+    const EffectSchema& schema = schema_of(lua, runs[i]);
     for (auto& history : out.entries[i].settings) {
       if (history.overridden) history.value = *history.overridden;
       settings.emplace_back(history.name, history.value);
+      note_named_in(runs[i].entry, history, schema, out.volumes);
     }
   }
   return out;

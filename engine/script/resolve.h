@@ -26,6 +26,10 @@ bool may_change(const std::vector<EntryRun>& runs, const Surroundings& surroundi
 SettingHistory history_of(lua_State* lua, const SettingSchema& schema, const SettingSource& source,
                           const std::string& full_name, const BuildContext& context);
 
+/// Sets StackEntry::named_in where the setting names a file. `volumes`: those of the frame.
+void note_named_in(StackEntry& entry, const SettingHistory& setting, const EffectSchema& effect,
+                   const std::vector<VolumeState>& volumes = {});
+
 /// Sets `entry.settings` of every run. Throws ScriptError: functions that fail or give what a setting does not allow.
 Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const Surroundings& surroundings,
                              const BuildContext& context);

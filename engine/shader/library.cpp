@@ -74,6 +74,24 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
 
 }  // namespace
 
+std::string ShaderLibrary::own_name(const std::string& name, const fs::path& script) {
+  const auto folders = path_.folders_of(script);
+  if (folders.empty() || !is_safe_name(name) || (path_.made && path_.made->find(name))) return name;
+  const std::lock_guard lock(mutex_);
+  std::string& known = own_names_[{name, folders.front()}];
+  if (!known.empty()) return known;
+  known = name;
+  for (const fs::path& folder : folders) {
+    const fs::path own = folder / "shaders" / (name + ".glsl");
+    if (!is_file(own, path_.record.get())) continue;
+    if (path_.find_shader(name + ".glsl").front() == own) break;
+    known += "@" + folder.string();
+    own_files_[known] = own;
+    break;
+  }
+  return known;
+}
+
 Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (const auto known = sources_.find(name); known != sources_.end()) return known->second;
@@ -81,7 +99,11 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
     AFTERGLOW_TRY(auto source, load(path_, name, made->origin, made->text));
     return sources_[name] = source;
   }
-  const auto hits = is_safe_name(name) ? path_.find_shader(name + ".glsl") : std::vector<fs::path>{};
+  std::vector<fs::path> hits;
+  if (const auto own = own_files_.find(name); own != own_files_.end())
+    hits = {own->second};
+  else if (is_safe_name(name))
+    hits = path_.find_shader(name + ".glsl");
   if (hits.empty()) {
     Error error = shader_error("", 0, fmt::format("unknown shader '{}'", name));
     constexpr std::string_view kExtension = ".glsl", kFolder = "shaders/";
@@ -102,6 +124,7 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
 void ShaderLibrary::reload() {
   const std::lock_guard lock(mutex_);
   sources_.clear();
+  own_names_.clear();
 }
 
 void ShaderLibrary::search(SearchPath path) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/hash.h"
@@ -22,7 +23,7 @@ struct ShaderFile;
 
 /// One file of GLSL with its includes resolved.
 struct ShaderSource {
-  std::string name;  ///< as asked for, without ".glsl": "glow/threshold"
+  std::string name;  ///< as `find` was asked for it, without ".glsl": "glow/threshold"
   std::filesystem::path path;
   std::shared_ptr<const ShaderFile> file;  ///< its text, as the author wrote it
   ShaderInterface interface;
@@ -53,7 +54,11 @@ class ShaderLibrary {
  public:
   explicit ShaderLibrary(SearchPath path) : path_(std::move(path)) {}
 
-  /// Finds "NAME.glsl", or what was made under that name (SearchPath::made). Errors (script): unknown name (with the
+  /// What a script's passes are to ask `find` for: the name, or "NAME@FOLDER" where the script's own folder of the search
+  /// path has a shader of the name and another one would be found.
+  std::string own_name(const std::string& name, const std::filesystem::path& script);
+
+  /// Finds "NAME.glsl", or the file that `own_name` has given a name to, or what was made under that name (SearchPath::made). Errors (script): unknown name (with the
   /// nearest), syntax of declarations, missing include, include cycle, neither or both of apply/sample_at; file and
   /// line are those of the offending text.
   Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
@@ -74,6 +79,8 @@ class ShaderLibrary {
   SearchPath path_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<const ShaderSource>> sources_;
+  std::map<std::pair<std::string, std::filesystem::path>, std::string> own_names_;  ///< by name and folder
+  std::map<std::string, std::filesystem::path> own_files_;  ///< by what own_name gave; scripts name no others
 };
 
 }  // namespace afterglow

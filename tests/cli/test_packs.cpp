@@ -148,5 +148,69 @@ TEST_F(Packs, ExtendingAPresetOfAPack) {
   EXPECT_EQ(picture({"look.lua"}), picture({"kit"}));
 }
 
+/// Two packs whose shaders and tables have the same names: each effect and each preset has its own.
+TEST_F(Packs, PacksDoNotMeet) {
+  const auto pack = [&](const std::string& name, const char* color, const char* gain) {
+    const std::string folder = "packs/" + name + "/";
+    write(folder + "effects/dye_" + name + ".lua",
+          "local fx = require \"afterglow\"\nreturn fx.effect { name = \"dye_" + name +
+              "\",\n  build = function(g, s, source) return g:pass { shader = \"dye/main\", source = source } end }\n");
+    write(folder + "shaders/dye/main.glsl",
+          std::string("vec4 apply(vec4 color) { return vec4(color.rgb * vec3(") + color + "), color.a); }\n");
+    write(folder + "shaders/vignette/darken.glsl", "this is of this pack alone\n");
+    write(folder + "luts/film.cube", std::string("LUT_1D_SIZE 2\n0 0 0\n") + gain + "\n");
+    write(folder + "presets/base_" + name + ".lua",
+          "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut { file = \"luts/film.cube\" } }\n");
+  };
+  const auto look = [&](const std::string& name, const std::string& stack) {
+    write(name, "local fx = require \"afterglow\"\nreturn " + stack + "\n");
+    return picture({name});
+  };
+  pack("b", "0, 0, 1", "1 0.5 1");
+  const std::string dyed = look("b.lua", "fx.stack { fx.dye_b {} }");
+  const std::string graded = look("base.lua", "fx.extend(\"base_b\", {})");
+  const std::string masked = look("mask.lua", "fx.stack { fx.dye_b { mask = 0.5 } }");
+  pack("a", "1, 0, 0", "0.25 1 1");
+  EXPECT_EQ(picture({"b.lua"}), dyed);
+  EXPECT_EQ(picture({"mask.lua"}), masked);
+  EXPECT_EQ(picture({"base.lua"}), graded);
+  EXPECT_NE(look("a.lua", "fx.stack { fx.dye_a {} }"), dyed);
+  EXPECT_NE(look("base_a.lua", "fx.extend(\"base_a\", {})"), graded);
+  // Both in one look: nothing is left of the light.
+  write("black.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.channel_mixer { red_out_red_in = 0, green_out_green_in "
+        "= 0, blue_out_blue_in = 0 } }\n");
+  EXPECT_EQ(look("both.lua", "fx.stack { fx.dye_a {}, fx.dye_b {} }"), picture({"black.lua"}));
+  // A name that the preset gives itself goes along its own path.
+  EXPECT_NE(look("own.lua", "fx.extend(\"base_b\", { lut = { file = \"luts/film.cube\" } })"), graded);
+  // A built-in effect is changed beside the preset, not by a pack that has a shader of its name.
+  look("built_in.lua", "fx.stack { fx.vignette {} }");
+  write("shaders/vignette/darken.glsl", "this is beside the preset\n");
+  EXPECT_THAT(run_here({"check", "built_in.lua"}).err, HasSubstr("shaders/vignette/darken.glsl:1: error"));
+}
+
+/// What --resume makes again: a table of a pack that another pack has one of the same name of.
+TEST_F(Packs, ATableOfAPackIsOneOfItsFiles) {
+  for (const char* name : {"a", "b"}) {
+    const std::string folder = std::string("packs/") + name + "/";
+    write(folder + "luts/film.cube", "LUT_1D_SIZE 2\n0 0 0\n1 0.5 1\n");
+    write(folder + "presets/base_" + name + ".lua",
+          "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut { file = \"luts/film.cube\" } }\n");
+  }
+  write("look.lua", "return require(\"afterglow\").extend(\"base_b\", {})\n");
+  fs::copy_file(path("a.exr"), path("s.0001.exr"));
+  const auto made = [&] {
+    const Outcome outcome =
+        run_here({"run", "look.lua", "s.####.exr", "-o", "o.####.png", "--resume", "--device", "llvmpipe"});
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return read("o.0001.png");
+  };
+  const std::string first = made();
+  write("packs/a/luts/film.cube", "LUT_1D_SIZE 2\n0 0 0\n0 0 0\n");
+  EXPECT_EQ(made(), first);
+  write("packs/b/luts/film.cube", "LUT_1D_SIZE 2\n0 0 0\n0.25 1 1\n");
+  EXPECT_NE(made(), first);
+}
+
 }  // namespace
 }  // namespace afterglow::test
