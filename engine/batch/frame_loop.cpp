@@ -256,6 +256,9 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->options.memory = &memory_;
   reading->scaling = planner_.scaling_of(planned->header);
   planner_.tell_of_shape(planned->header, frame.job, events_.diagnostics);
+  if (!taken_ || *taken_ != planned->header.taken)
+    taken_ = std::make_shared<const std::map<std::string, std::string>>(planned->header.taken);
+  frame.taken = taken_;
   reading->request = std::move(planned->request);
   const auto need = planner_.need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {

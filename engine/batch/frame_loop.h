@@ -110,6 +110,7 @@ class FrameLoop {
   int pre_roll_frames_ = 0;              ///< that a part of a sequence runs first
   std::vector<std::size_t> gaps_;        ///< places of frames of its sequence that are not in its history: they failed
   std::optional<int> begun_;             ///< number of the frame that was evaluated last
+  SharedChannels taken_;                  ///< of the frame that was begun last
   std::deque<SharedSkips> skips_;        ///< of frames so far, the newest first
 };
 

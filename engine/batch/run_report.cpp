@@ -160,6 +160,8 @@ Json frame_json(const FrameRecord& frame) {
   if (auto found = overflows_json(frame.non_finite); !found.empty()) out["beyond_half_floats"] = std::move(found);
   if (frame.state != FrameRecord::State::done) return out;
   if (frame.begins_shot) out["begins_shot"] = true;
+  if (frame.taken)
+    for (const auto& [input, channels] : *frame.taken) out["channels"][input] = channels;
   out["width"] = frame.size.width;
   out["height"] = frame.size.height;
   const FrameSteps& steps = frame.steps;

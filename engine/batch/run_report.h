@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,9 @@ struct FrameSteps {
 /// Null: nothing. Frames that skip the same have the same list, so that long sequences do not fill memory with it.
 using SharedSkips = std::shared_ptr<const std::vector<Skipped>>;
 
+/// Channels that the colour and the other inputs of a frame were taken from, shared likewise.
+using SharedChannels = std::shared_ptr<const std::map<std::string, std::string>>;
+
 /// What became of one frame.
 struct FrameRecord {
   FrameJob job;
@@ -40,6 +44,7 @@ struct FrameRecord {
   FrameTimes times;
   FrameNonFinite non_finite;
   SharedSkips skipped;       ///< what this frame did not run because of its content
+  SharedChannels taken;      ///< null: its header was not read
   bool begins_shot = false;  ///< nothing was handed on to it, though a frame is before it
 };
 

@@ -25,8 +25,10 @@ class Diagnostics {
   void print(const std::string& message) { emit(Severity::printed, message); }
   /// Warns once per distinct `key` over the life of this object.
   void warn_once(const std::string& key, const std::string& message);
+  void note_once(const std::string& key, const std::string& message);  ///< likewise
 
  private:
+  bool is_first(const std::string& key);
   void emit(Severity severity, const std::string& message);
   std::mutex mutex_;
   Sink sink_;

@@ -190,6 +190,8 @@ class ExrFile : public PictureFile {
     shown.data_window = part.data_window;
     shown.display_window = part.display_window;
     shown.orientation = part.orientation;
+    shown.view = part.view;
+    shown.views = part.views;
     PartSlots slots;
     for (const ExrChannel& channel : part.channels) {
       const std::size_t dot = channel.name.rfind('.');

@@ -148,6 +148,28 @@ void pass_over(Bytes& bytes, const std::string& name, std::string_view type, std
   bytes.skip(left);
 }
 
+/// The names of a "multiView"; those that are longer than names of channels are of none.
+std::vector<std::string> read_views(Bytes& bytes, std::int32_t size) {
+  constexpr std::size_t kMost = 64;
+  std::vector<std::string> views;
+  auto left = static_cast<std::uint64_t>(size);
+  while (left > 0) {
+    if (left < sizeof(std::uint32_t)) throw Malformed{"attribute 'multiView' is malformed"};
+    const auto length = bytes.number<std::uint32_t>();
+    left -= sizeof length;
+    if (length > left) throw Malformed{"attribute 'multiView' is malformed"};
+    left -= length;
+    if (length > kMaxName || views.size() >= kMost) {
+      bytes.skip(length);
+      continue;
+    }
+    std::string view(length, '\0');
+    bytes.read(view.data(), view.size());
+    if (!view.empty()) views.push_back(std::move(view));
+  }
+  return views;
+}
+
 /// One part's attributes; nothing when the list is empty, which ends a multi-part header.
 std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
   ExrPart part;
@@ -213,6 +235,11 @@ std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
         part.tiled = value == "tiledimage" || value == "deeptile";
         part.deep = value == "deepscanline" || value == "deeptile";
       }
+    } else if (name == "view" && type == "string" && static_cast<std::size_t>(size) <= kMaxName) {
+      part.view.resize(static_cast<std::size_t>(size));
+      bytes.read(part.view.data(), part.view.size());
+    } else if (name == "multiView" && type == "stringvector") {
+      part.views = read_views(bytes, size);
     } else {
       pass_over(bytes, name, type, size);
     }

@@ -35,6 +35,8 @@ struct ExrPart {
   Size tile;
   int compression = 0;  ///< the number stored in the file
   int orientation = 1;
+  std::string view;                ///< the eye of a stereo picture that it is of
+  std::vector<std::string> views;  ///< the eyes that it holds, that of plain names first
 
   std::uint64_t pixel_bytes() const;
   int chunk_lines() const;  ///< lines that one chunk holds, unless it is tiled

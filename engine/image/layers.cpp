@@ -9,75 +9,13 @@
 #include <utility>
 
 #include "core/text.h"
+#include "image/channel_layers.h"
+#include "image/layer_nearness.h"
 
 namespace afterglow {
 namespace {
 
-/// Channels of one part that share everything before the last dot of their names.
-struct Layer {
-  int part = 0;
-  std::string prefix;  ///< before the last dot; empty for plain R, G, B
-  std::string name;    ///< what users call it: the prefix, or the part's name
-  std::string last;    ///< last component of `name`, lower case: "combined", "depth", "n"
-  std::string group;   ///< what stands before that: the view layer
-  std::vector<int> channels;
-  std::vector<std::string> suffixes;  ///< lower case: "r", "z", …
-
-  int find(std::initializer_list<const char*> names) const {
-    for (const char* wanted : names)
-      for (std::size_t i = 0; i < suffixes.size(); ++i)
-        if (suffixes[i] == wanted) return channels[i];
-    return -1;
-  }
-};
-
-bool any_of(const std::string& text, std::initializer_list<const char*> names) {
-  return std::any_of(names.begin(), names.end(), [&](const char* name) { return text == name; });
-}
-
-std::vector<Layer> layers_of(const std::vector<FilePart>& parts) {
-  std::vector<Layer> layers;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (!parts[p].unreadable.empty()) continue;
-    const std::size_t first = layers.size();
-    for (std::size_t c = 0; c < parts[p].channels.size(); ++c) {
-      const std::string& full = parts[p].channels[c];
-      const std::size_t dot = full.rfind('.');
-      const std::string prefix = dot == std::string::npos ? "" : full.substr(0, dot);
-      auto layer = std::find_if(layers.begin() + static_cast<std::ptrdiff_t>(first), layers.end(),
-                                [&](const Layer& l) { return l.prefix == prefix; });
-      if (layer == layers.end()) {
-        Layer made;
-        made.part = static_cast<int>(p);
-        made.prefix = prefix;
-        made.name = prefix.empty() ? parts[p].name : prefix;
-        const std::size_t cut = made.name.rfind('.');
-        made.last = lower(cut == std::string::npos ? made.name : made.name.substr(cut + 1));
-        made.group = cut == std::string::npos ? "" : made.name.substr(0, cut);
-        layer = layers.insert(layers.end(), std::move(made));
-      }
-      layer->channels.push_back(static_cast<int>(c));
-      layer->suffixes.push_back(lower(dot == std::string::npos ? full : full.substr(dot + 1)));
-    }
-  }
-  return layers;
-}
-
-bool named_normal(const Layer& layer) { return any_of(layer.last, {"n", "normal", "normals", "norm", "nn"}); }
-bool named_motion(const Layer& layer) {
-  return any_of(layer.last, {"vector", "motion", "motionvector", "motionvectors", "motion_vector", "motion_vectors",
-                             "velocity", "forward", "mv", "mvec"});
-}
-bool named_depth(const Layer& layer) { return any_of(layer.last, {"z", "depth", "zdepth", "pz"}); }
-
-int red_of(const Layer& l) { return l.find({"r", "red"}); }
-int green_of(const Layer& l) { return l.find({"g", "green"}); }
-int blue_of(const Layer& l) { return l.find({"b", "blue"}); }
-int alpha_of(const Layer& l) { return l.find({"a", "alpha"}); }
-bool has_rgb(const Layer& l) { return red_of(l) >= 0 && green_of(l) >= 0 && blue_of(l) >= 0; }
-int grey_of(const Layer& l) { return l.find({"y", "l", "gray", "grey", "luminance"}); }
-
-ChannelChoice color_choice(const Layer& l) {
+ChannelChoice color_choice(const ChannelLayer& l) {
   if (has_rgb(l)) return {l.part, {red_of(l), green_of(l), blue_of(l), alpha_of(l)}};
   const int x = l.find({"x"}), y = l.find({"y"}), z = l.find({"z"});
   if (x >= 0 && y >= 0 && z >= 0) return {l.part, {x, y, z, -1}};
@@ -93,86 +31,119 @@ ChannelChoice color_choice(const Layer& l) {
   return {l.part, {l.channels[0], l.channels[0], l.channels[0], -1}};
 }
 
-/// How likely a layer is the picture itself: small is likely, negative never.
-int color_rank(const Layer& l) {
-  if (named_normal(l) || named_depth(l) || named_motion(l)) return -1;
-  if (has_rgb(l)) {
-    if (l.name.empty()) return 0;
-    if (l.last == "combined") return 1;
-    if (any_of(l.last, {"rgba", "rgb", "beauty", "c", "color", "colour", "main", "default", "image", "final"}))
-      return 2;
-    return 4;
-  }
-  if (grey_of(l) < 0 || l.find({"x"}) >= 0) return -1;
-  return l.name.empty() ? 3 : 5;
-}
-
-std::vector<const Layer*> all_of(const std::vector<Layer>& layers) {
-  std::vector<const Layer*> all;
-  for (const Layer& layer : layers) all.push_back(&layer);
+std::vector<const ChannelLayer*> all_of(const std::vector<ChannelLayer>& layers) {
+  std::vector<const ChannelLayer*> all;
+  for (const ChannelLayer& layer : layers) all.push_back(&layer);
   return all;
 }
 
-const Layer* best_color(const std::vector<const Layer*>& layers) {
-  const Layer* best = nullptr;
-  for (const Layer* layer : layers) {
+/// How likely a layer is the picture: of several eyes that of plain names first.
+std::pair<int, bool> color_place(const ChannelLayer* l) { return {color_rank(*l), !l->default_view}; }
+
+const ChannelLayer* best_color(const std::vector<const ChannelLayer*>& layers) {
+  const ChannelLayer* best = nullptr;
+  for (const ChannelLayer* layer : layers) {
     if (color_rank(*layer) < 0) continue;
-    if (!best || color_rank(*layer) < color_rank(*best)) best = layer;
+    if (!best || color_place(layer) < color_place(best)) best = layer;
   }
   return best;
 }
 
-bool ends_so(const std::string& full, const std::string& end) { return full.ends_with("." + end); }
+Beside beside_layers(const std::vector<ChannelLayer>& layers, const std::vector<ChannelLayer>& others,
+                     const BesideColor& beside) {
+  const auto& of = beside.parts ? others : layers;
+  return {&of, beside.color ? layer_of(of, *beside.color) : nullptr, beside.parts != nullptr};
+}
 
-/// The layers that `name` may mean: by prefix, by part, by part and prefix, as the view layer in front of several, or
-/// by its end where all that end so have one name.
-std::vector<const Layer*> layers_named(const std::vector<FilePart>& parts, const std::vector<Layer>& layers,
-                                       const std::string& name) {
-  std::vector<const Layer*> exact, wider;
-  for (const Layer& layer : layers) {
+/// Names of a part of another eye ask for it with the part's name alone: each eye may have them.
+bool of_other_eye(const ChannelLayer& l, const std::string& name, const Beside& beside) {
+  if (!beside.own || l.view.empty() || beside.own->view.empty() || lower(l.view) == lower(beside.own->view))
+    return false;
+  const auto said = split(lower(name), '.');
+  return std::ranges::find(said, lower(l.view)) == said.end();
+}
+
+using Layers = std::vector<const ChannelLayer*>;
+
+/// Of layers that are called alike the nearest, where it is known which are near.
+Layers nearest_of(Layers layers, const Beside& beside) {
+  if (!beside.own || layers.size() < 2) return layers;
+  std::optional<Nearness> best;
+  for (const ChannelLayer* layer : layers)
+    if (const auto near = nearness(*layer, beside); near && (!best || *near < *best)) best = near;
+  if (best) std::erase_if(layers, [&](const ChannelLayer* layer) { return nearness(*layer, beside) != best; });
+  return layers;
+}
+
+/// The layers that `name` may mean: by prefix, by part, by part and prefix, as the view layer in front of several, as
+/// an eye, or by its end where all that end so, or all that are nearest, have one name.
+Layers layers_named(const std::vector<FilePart>& parts, const std::vector<ChannelLayer>& layers,
+                    const std::string& name, const Beside& beside = {}) {
+  Layers exact, wider, eye, ending;
+  for (const ChannelLayer& layer : layers) {
     const std::string& part = parts[static_cast<std::size_t>(layer.part)].name;
     const bool of_part = !part.empty() && name == part + (layer.prefix.empty() ? "" : "." + layer.prefix);
-    if (layer.name == name || of_part) {
-      exact.push_back(&layer);
-    } else if (part == name || layer.name.starts_with(name + ".")) {
-      wider.push_back(&layer);
+    const bool near = !of_other_eye(layer, name, beside);
+    const bool one_part = beside.own && layer.part == beside.own->part;
+    if (of_part || (layer.name == name && (near || one_part))) exact.push_back(&layer);
+    if (part == name || layer.name.starts_with(name + ".")) wider.push_back(&layer);
+    if (layer.view == name) eye.push_back(&layer);
+    if (ends_so(layer.name, name) && near) ending.push_back(&layer);
+  }
+  if (!exact.empty()) return nearest_of(exact, beside);
+  if (!wider.empty()) return wider;
+  if (!eye.empty()) return eye;
+  ending = nearest_of(ending, beside);
+  const bool unlike =
+      std::ranges::any_of(ending, [&](const ChannelLayer* l) { return l->name != ending.front()->name; });
+  return unlike ? Layers() : ending;
+}
+
+/// Channels that are called so, with their part's name or without; else those whose names end so.
+std::vector<ChannelChoice> channels_named(const std::vector<FilePart>& parts, const std::vector<ChannelLayer>& layers,
+                                          const std::string& name, const Beside& beside) {
+  std::vector<ChannelChoice> exact, ending;
+  for (const ChannelLayer& layer : layers) {
+    const FilePart& part = parts[static_cast<std::size_t>(layer.part)];
+    for (const int c : layer.channels) {
+      const std::string& channel = part.channels[static_cast<std::size_t>(c)];
+      const ChannelChoice choice{layer.part, {c}};
+      if (part.name + "." + channel == name) return {choice};
+      const bool near = !of_other_eye(layer, name, beside);
+      const bool one_part = beside.own && layer.part == beside.own->part;
+      if (channel == name && (near || one_part)) exact.push_back(choice);
+      if (ends_so(channel, name) && near) ending.push_back(choice);
     }
   }
-  if (!exact.empty()) return exact;
-  if (!wider.empty()) return wider;
-  std::vector<const Layer*> ending;
-  for (const Layer& layer : layers)
-    if (ends_so(layer.name, name)) ending.push_back(&layer);
-  const bool unlike = std::ranges::any_of(ending, [&](const Layer* l) { return l->name != ending.front()->name; });
-  return unlike ? std::vector<const Layer*>() : ending;
+  return exact.empty() ? ending : exact;
 }
 
-/// Channels whose names end so.
-std::vector<ChannelChoice> channels_ending(const std::vector<FilePart>& parts, const std::string& name) {
-  std::vector<ChannelChoice> out;
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    for (std::size_t c = 0; c < parts[p].channels.size(); ++c)
-      if (parts[p].unreadable.empty() && ends_so(parts[p].channels[c], name))
-        out.push_back({static_cast<int>(p), {static_cast<int>(c)}});
-  return out;
+/// The only one, or the only one that is nearest to the colours.
+std::optional<ChannelChoice> nearest_channel(const std::vector<ChannelLayer>& layers,
+                                             const std::vector<ChannelChoice>& channels, const Beside& beside) {
+  if (channels.size() == 1) return channels.front();
+  if (!beside.own) return std::nullopt;
+  Layers of;
+  for (const ChannelChoice& channel : channels) of.push_back(layer_of(layers, channel));
+  const Layers near = nearest_of(of, beside);
+  if (near.size() != 1) return std::nullopt;
+  return channels[static_cast<std::size_t>(std::ranges::find(of, near.front()) - of.begin())];
 }
 
-/// A single channel by its full name, by part and name, or by its end where no other ends so.
-std::optional<ChannelChoice> channel_named(const std::vector<FilePart>& parts, const std::string& name) {
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (!parts[p].unreadable.empty()) continue;
-    for (std::size_t c = 0; c < parts[p].channels.size(); ++c)
-      if (parts[p].channels[c] == name || parts[p].name + "." + parts[p].channels[c] == name)
-        return ChannelChoice{static_cast<int>(p), {static_cast<int>(c)}};
-  }
-  const auto ending = channels_ending(parts, name);
-  return ending.size() == 1 ? std::optional(ending.front()) : std::nullopt;
+/// A single channel by its full name, by part and name, or by its end; the first of several that have one full name.
+std::optional<ChannelChoice> channel_named(const std::vector<FilePart>& parts, const std::vector<ChannelLayer>& layers,
+                                           const std::string& name, const Beside& beside = {}) {
+  const auto named = channels_named(parts, layers, name, beside);
+  if (auto channel = nearest_channel(layers, named, beside)) return channel;
+  if (named.empty()) return std::nullopt;
+  const auto& first = parts[static_cast<std::size_t>(named[0].part)].channels;
+  return first[static_cast<std::size_t>(named[0].channels[0])] == name ? std::optional(named[0]) : std::nullopt;
 }
 
-std::vector<std::string> layer_names(const std::vector<Layer>& layers) {
+std::vector<std::string> layer_names(const std::vector<ChannelLayer>& layers) {
   std::vector<std::string> names;
-  for (const Layer& layer : layers) {
-    const std::string& shown = layer.name;
+  for (const ChannelLayer& layer : layers) {
+    const std::string& shown = layer.shown;
     if (!shown.empty() && std::find(names.begin(), names.end(), shown) == names.end()) names.push_back(shown);
   }
   return names;
@@ -198,7 +169,7 @@ std::string listed(const std::vector<std::string>& names) {
          fmt::format(" and {} more", names.size() - kMost);
 }
 
-Error not_found(const std::vector<FilePart>& parts, const std::vector<Layer>& layers, const std::string& what,
+Error not_found(const std::vector<FilePart>& parts, const std::vector<ChannelLayer>& layers, const std::string& what,
                 const std::string& name) {
   for (const FilePart& part : parts)
     if (part.name == name && !part.unreadable.empty()) return Error{ErrorKind::io, part.unreadable};
@@ -213,7 +184,7 @@ Error not_found(const std::vector<FilePart>& parts, const std::vector<Layer>& la
       ErrorKind::io, fmt::format("has no {} '{}'", what, name), "", 0, listed(known), nearest_name(name, known)};
 }
 
-std::optional<Error> nothing_readable(const std::vector<FilePart>& parts, const std::vector<Layer>& layers) {
+std::optional<Error> nothing_readable(const std::vector<FilePart>& parts, const std::vector<ChannelLayer>& layers) {
   if (!layers.empty()) return std::nullopt;
   for (const FilePart& part : parts)
     if (!part.unreadable.empty()) return Error{ErrorKind::io, part.unreadable};
@@ -221,7 +192,7 @@ std::optional<Error> nothing_readable(const std::vector<FilePart>& parts, const 
 }
 
 /// The depth channel of a layer, or −1. `certain`: the name says depth; else any single channel will do.
-int depth_of(const Layer& l, bool certain) {
+int depth_of(const ChannelLayer& l, bool certain) {
   if (certain && l.last == "mist") return -1;  // 0…1, between two distances that nobody knows
   const bool vector = l.find({"x"}) >= 0;
   if (!vector)
@@ -235,11 +206,11 @@ int depth_of(const Layer& l, bool certain) {
 
 /// A "Z" in a layer of another name: "Denoising Depth.Z", which has 0 where nothing is, comes before "Depth.Z" in
 /// files.
-bool unsure_depth(const Layer& l) {
+bool unsure_depth(const ChannelLayer& l) {
   return !l.name.empty() && !named_depth(l) && !has_rgb(l) && l.find({"depth", "zdepth", "pz"}) < 0;
 }
 
-std::optional<std::vector<int>> normal_of(const Layer& l, bool certain) {
+std::optional<std::vector<int>> normal_of(const ChannelLayer& l, bool certain) {
   if (certain && !named_normal(l)) {
     const int x = l.find({"nx"}), y = l.find({"ny"}), z = l.find({"nz"});
     if (x >= 0 && y >= 0 && z >= 0) return std::vector<int>{x, y, z};
@@ -252,7 +223,7 @@ std::optional<std::vector<int>> normal_of(const Layer& l, bool certain) {
   return std::nullopt;
 }
 
-std::optional<std::vector<int>> motion_of(const Layer& l, bool certain) {
+std::optional<std::vector<int>> motion_of(const ChannelLayer& l, bool certain) {
   if (certain && !named_motion(l)) return std::nullopt;
   const int x = l.find({"x"}), y = l.find({"y"}), z = l.find({"z"}), w = l.find({"w"});
   if (x >= 0 && y >= 0 && z >= 0 && w >= 0) return std::vector<int>{x, y, z, w};
@@ -264,48 +235,48 @@ std::optional<std::vector<int>> motion_of(const Layer& l, bool certain) {
   return std::nullopt;
 }
 
-/// Candidates in order of nearness to the colour layer: itself, its eye of a stereo picture ("depth.right" beside
-/// "rgba.right"; in the same view layer first), its view layer, plain ones, the rest. Of those that are equally near,
-/// the ones that are `unsure` come last.
-std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const ChannelChoice* color,
-                                      bool (*unsure)(const Layer&) = nullptr) {
-  const Layer* own = nullptr;
-  for (const Layer& layer : layers)
-    if (color && layer.part == color->part &&
-        std::ranges::find(layer.channels, color->channels[0]) != layer.channels.end())
-      own = &layer;
-  const auto first = [](const Layer& l) { return l.name.substr(0, l.name.find('.')); };
-  const auto distance = [&](const Layer* l) {
-    if (!own) return l->group.empty() ? 4 : 5;
-    if (l == own) return 0;
-    if (l->last == own->last && !own->last.empty()) return first(*l) == first(*own) ? 1 : 2;
-    return l->group == own->group ? 3 : l->group.empty() ? 4 : 5;
-  };
-  const auto place = [&](const Layer* l) { return std::pair(distance(l), unsure && unsure(*l)); };
-  std::vector<const Layer*> sorted = all_of(layers);
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const Layer* a, const Layer* b) { return place(a) < place(b); });
-  return sorted;
+std::vector<ChannelLayer> layers_of_other(const BesideColor& color) {
+  return color.parts ? layers_of(*color.parts) : std::vector<ChannelLayer>();
+}
+
+std::optional<std::vector<int>> depth_offer(const ChannelLayer& layer) {
+  const int channel = depth_of(layer, true);
+  return channel < 0 ? std::nullopt : std::optional(std::vector<int>{channel});
+}
+
+using VectorsOf = std::optional<std::vector<int>> (*)(const ChannelLayer&, bool certain);
+
+Result<std::optional<ChannelChoice>> find_vectors(const std::vector<FilePart>& parts, const std::string& name,
+                                                  const BesideColor& color, VectorsOf vectors_of, const char* what) {
+  const std::vector<ChannelLayer> layers = layers_of(parts), others = layers_of_other(color);
+  const Beside beside = beside_layers(layers, others, color);
+  if (name.empty()) return nearest(all_of(layers), beside, [&](const ChannelLayer& l) { return vectors_of(l, true); });
+  for (const bool certain : {true, false})
+    for (const ChannelLayer* layer : layers_named(parts, layers, name, beside))
+      if (auto channels = vectors_of(*layer, certain))
+        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
+  return not_found(parts, layers, what, name);
 }
 
 }  // namespace
 
 Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::string& name) {
-  const std::vector<Layer> layers = layers_of(parts);
+  const std::vector<ChannelLayer> layers = layers_of(parts);
   if (const auto error = nothing_readable(parts, layers)) return *error;
   if (name.empty()) {
-    if (const Layer* best = best_color(all_of(layers))) return color_choice(*best);
+    if (const ChannelLayer* best = best_color(all_of(layers))) return color_choice(*best);
     // A single unnamed channel ("channel0", "I") is a grey picture.
     if (layers.size() == 1 && layers[0].name.empty() && color_rank(layers[0]) >= 0) return color_choice(layers[0]);
     if (layers.size() == 1 && layers[0].find({"z", "x"}) < 0 && !named_depth(layers[0]) && !named_normal(layers[0]))
       return color_choice(layers[0]);
     return Error{ErrorKind::io, "has no colour layer; choose one with --layer", "", 0, listed(channel_names(parts))};
   }
-  const std::vector<const Layer*> named = layers_named(parts, layers, name);
+  const Layers named = layers_named(parts, layers, name);
   if (!named.empty()) {
-    const Layer* best = best_color(named);
+    const ChannelLayer* best = best_color(named);
     return color_choice(best ? *best : *named.front());
   }
-  if (const auto channel = channel_named(parts, name)) {
+  if (const auto channel = channel_named(parts, layers, name)) {
     const int c = channel->channels[0];
     return ChannelChoice{channel->part, {c, c, c, -1}};
   }
@@ -313,43 +284,37 @@ Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::
 }
 
 std::vector<std::string> equal_colors(const std::vector<FilePart>& parts) {
-  constexpr int kFirstUnsure = 4;  // of `color_rank`: names that say nothing
-  const std::vector<Layer> layers = layers_of(parts);
-  const Layer* best = best_color(all_of(layers));
-  if (!best || color_rank(*best) < kFirstUnsure) return {};
-  std::vector<std::string> names;
-  for (const Layer& layer : layers)
-    if (color_rank(layer) == color_rank(*best)) names.push_back(layer.name);
+  const std::vector<ChannelLayer> layers = layers_of(parts);
+  const ChannelLayer* best = best_color(all_of(layers));
+  if (!best) return {};
+  std::vector<std::string> names{best->shown};
+  for (const ChannelLayer& layer : layers)
+    if (&layer != best && color_rank(layer) == color_rank(*best)) names.push_back(layer.shown);
   return names.size() > 1 ? names : std::vector<std::string>();
 }
 
 Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& parts, const std::string& name,
-                                                const ChannelChoice* color) {
-  const std::vector<Layer> layers = layers_of(parts);
-  if (name.empty()) {
-    for (const Layer* layer : by_nearness(layers, color, unsure_depth))
-      if (const int channel = depth_of(*layer, true); channel >= 0)
-        return std::optional(ChannelChoice{layer->part, {channel}});
-    return std::optional<ChannelChoice>();
-  }
-  if (const auto channel = channel_named(parts, name)) return channel;
+                                                BesideColor color) {
+  const std::vector<ChannelLayer> layers = layers_of(parts), others = layers_of_other(color);
+  const Beside beside = beside_layers(layers, others, color);
+  if (name.empty()) return nearest(all_of(layers), beside, depth_offer, unsure_depth);
+  if (const auto channel = channel_named(parts, layers, name, beside)) return channel;
   // Of several channels that end so ("Z"), the one that is depth.
   std::vector<ChannelChoice> depths;
-  for (const ChannelChoice& channel : channels_ending(parts, name))
-    for (const Layer& layer : layers)
+  for (const ChannelChoice& channel : channels_named(parts, layers, name, beside))
+    for (const ChannelLayer& layer : layers)
       if (layer.part == channel.part && depth_of(layer, true) == channel.channels[0]) depths.push_back(channel);
-  if (depths.size() == 1) return std::optional(depths.front());
-  for (const Layer* layer : layers_named(parts, layers, name))
-    if (const int channel = depth_of(*layer, true); channel >= 0)
-      return std::optional(ChannelChoice{layer->part, {channel}});
-  for (const Layer* layer : layers_named(parts, layers, name))
-    return std::optional(ChannelChoice{layer->part, {depth_of(*layer, false)}});
+  if (auto depth = nearest_channel(layers, depths, beside)) return depth;
+  for (const bool certain : {true, false})
+    for (const ChannelLayer* layer : layers_named(parts, layers, name, beside))
+      if (const int channel = depth_of(*layer, certain); channel >= 0)
+        return std::optional(ChannelChoice{layer->part, {channel}});
   return not_found(parts, layers, "depth channel", name);
 }
 
 std::vector<std::string> depth_channels(const FilePart& part) {
   std::vector<std::string> names;
-  for (const Layer& layer : layers_of({part})) {
+  for (const ChannelLayer& layer : layers_of({part})) {
     const int found = depth_of(layer, true);
     for (const int channel : layer.channels)
       if (channel == found || (named_depth(layer) && channel != alpha_of(layer)))
@@ -359,42 +324,23 @@ std::vector<std::string> depth_channels(const FilePart& part) {
 }
 
 Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& parts, const std::string& name,
-                                                 const ChannelChoice* color) {
-  const std::vector<Layer> layers = layers_of(parts);
-  if (name.empty()) {
-    for (const Layer* layer : by_nearness(layers, color))
-      if (auto channels = normal_of(*layer, true))
-        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
-    return std::optional<ChannelChoice>();
-  }
-  for (const bool certain : {true, false})
-    for (const Layer* layer : layers_named(parts, layers, name))
-      if (auto channels = normal_of(*layer, certain))
-        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
-  return not_found(parts, layers, "normal layer", name);
+                                                 BesideColor color) {
+  return find_vectors(parts, name, color, normal_of, "normal layer");
 }
 
 Result<std::optional<ChannelChoice>> find_motion(const std::vector<FilePart>& parts, const std::string& name,
-                                                 const ChannelChoice* color) {
-  const std::vector<Layer> layers = layers_of(parts);
-  if (name.empty()) {
-    for (const Layer* layer : by_nearness(layers, color))
-      if (auto channels = motion_of(*layer, true))
-        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
-    return std::optional<ChannelChoice>();
-  }
-  for (const bool certain : {true, false})
-    for (const Layer* layer : layers_named(parts, layers, name))
-      if (auto channels = motion_of(*layer, certain))
-        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
-  return not_found(parts, layers, "motion layer", name);
+                                                 BesideColor color) {
+  return find_vectors(parts, name, color, motion_of, "motion layer");
 }
 
-std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, const std::string& name) {
-  const std::vector<Layer> layers = layers_of(parts);
-  const auto named = layers_named(parts, layers, name);
-  if (named.empty() || (named.size() > 1 && named.front()->name != name)) return channel_named(parts, name);
-  const Layer& layer = *named.front();
+std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, const std::string& name,
+                                        BesideColor color) {
+  const std::vector<ChannelLayer> layers = layers_of(parts), others = layers_of_other(color);
+  const Beside beside = beside_layers(layers, others, color);
+  const auto named = layers_named(parts, layers, name, beside);
+  if (named.empty() || (named.size() > 1 && named.front()->name != name))
+    return channel_named(parts, layers, name, beside);
+  const ChannelLayer& layer = *named.front();
   for (const auto& usual : {std::vector<const char*>{"r", "g", "b", "a"},
                             {"red", "green", "blue", "alpha"},
                             {"x", "y", "z", "w"},
@@ -412,6 +358,34 @@ std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, cons
   std::vector<int> channels = layer.channels;
   channels.resize(std::min<std::size_t>(channels.size(), 4));
   return ChannelChoice{layer.part, std::move(channels)};
+}
+
+std::vector<std::string> likely_names(const std::vector<FilePart>& parts, const std::string& kind) {
+  const std::vector<ChannelLayer> layers = layers_of(parts);
+  const bool depth = kind == "depth";
+  const VectorsOf vectors_of = kind == "normal" ? normal_of : motion_of;
+  const auto offer = [&](const ChannelLayer& layer, bool certain) -> std::optional<std::vector<int>> {
+    if (!depth) return vectors_of(layer, certain);
+    if (certain) return depth_offer(layer);
+    return layer.channels.size() == 1 ? std::optional(layer.channels) : std::nullopt;
+  };
+  const auto looks_like = [&](const ChannelLayer& layer) {
+    const auto holds = [&](std::initializer_list<const char*> words) {
+      return std::ranges::any_of(words, [&](const char* word) { return layer.last.find(word) != std::string::npos; });
+    };
+    return depth              ? holds({"depth", "dist", "mist"})
+           : kind == "normal" ? holds({"norm"})
+                              : holds({"motion", "vel", "mv"});
+  };
+  std::vector<std::string> names;
+  for (const bool certain : {true, false})
+    for (const ChannelLayer& layer : layers) {
+      if (!certain && !looks_like(layer)) continue;
+      const auto channels = offer(layer, certain);
+      std::string name = channels ? choice_name(parts, {layer.part, *channels}) : "";
+      if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+    }
+  return names;
 }
 
 std::vector<std::string> layer_names(const std::vector<FilePart>& parts) { return layer_names(layers_of(parts)); }

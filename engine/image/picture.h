@@ -49,6 +49,7 @@ struct Picture {
   std::map<std::string, Image> auxiliary;
   std::vector<std::string> asked;   ///< names of auxiliary inputs that it was read for: what is not there, it has not
   std::vector<std::string> layers;  ///< names of all layers of the file, read or not
+  std::map<std::string, std::string> hints;  ///< of inputs that it has not: which channels may be meant
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;
   /// When not empty, the pixels of `color` as half floats, RGBA, in place of color.pixels, which are empty then: of

@@ -63,7 +63,7 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
     AFTERGLOW_TRY(made.other, open_picture(wanted.file, limits_of(options)));
   }
   const PictureFile& file = plan.file_of(made);
-  const ChannelChoice* color = made.other ? nullptr : &plan.color;
+  const BesideColor color(&plan.color, made.other ? &plan.file->parts() : nullptr);
   auto found = &kind == &kDepth    ? find_depth(file.parts(), wanted.name, color)
                : &kind == &kNormal ? find_normal(file.parts(), wanted.name, color)
                                    : find_motion(file.parts(), wanted.name, color);
@@ -86,11 +86,11 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
 Result<std::optional<AuxiliaryPlan>> plan_layer(const std::string& name, const ReadPlan& plan) {
   AuxiliaryPlan made{.name = name, .kind = nullptr, .other = nullptr, .choice = {}};
   const std::string layer = name.substr(kLayerPrefix.size());
-  if (auto choice = find_layer(plan.file->parts(), layer)) {
+  if (auto choice = find_layer(plan.file->parts(), layer, &plan.color)) {
     made.choice = std::move(*choice);
     return std::optional(std::move(made));
   }
-  auto choice = plan.mattes ? find_layer(plan.mattes->parts(), layer) : std::nullopt;
+  auto choice = plan.mattes ? find_layer(plan.mattes->parts(), layer, {&plan.color, &plan.file->parts()}) : std::nullopt;
   if (!choice) return std::optional<AuxiliaryPlan>();
   made.other = plan.mattes;
   made.choice = std::move(*choice);

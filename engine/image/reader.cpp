@@ -13,6 +13,7 @@
 #include "core/file_record.h"
 #include "core/memory_limit.h"
 #include "core/text.h"
+#include "image/choice_report.h"
 #include "image/color_encoding.h"
 #include "image/exr_header.h"
 #include "image/half_colors.h"
@@ -182,10 +183,8 @@ Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnos
   const auto facts = std::make_shared<FileFacts>(facts_of(plan));
   picture.facts = facts;
   picture.layers = layers_of(plan);
-  if (options.layer.empty())
-    if (const auto equal = equal_colors(plan.file->parts()); !equal.empty())
-      diagnostics.warn_once("layer taken", fmt::format("{}: '{}' is taken of the layers {}; --layer says another",
-                                                       plan.file->path().string(), equal.front(), join(equal)));
+  picture.hints = likely_channels(plan);
+  report_choices(plan, options, diagnostics);
   report_shape(picture, plan.file->path(), diagnostics);
   ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
   if (!options.input_space.empty()) {
@@ -341,6 +340,8 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     header.channels = static_cast<int>(plan.color_part().channels.size());
     for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.name);
     header.layers = layers_of(plan);
+    header.taken = taken_channels(plan, options.auxiliary);
+    header.hints = likely_channels(plan);
     header.has_alpha = plan.color.channels[3] >= 0;
     header.facts = std::make_shared<const FileFacts>(facts_of(plan));
     header.format = plan.file->format();

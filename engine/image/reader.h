@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -99,6 +100,8 @@ struct PictureHeader {
   int channels = 0;
   std::vector<std::string> auxiliary;  ///< "depth", "normal", "motion", layers asked for: those that reading would find
   std::vector<std::string> layers;     ///< names of all layers
+  /// Channels that the colour ("color") and what was asked for are taken from; what may be meant by what is not there.
+  std::map<std::string, std::string> taken, hints;
   bool has_alpha = false;
   std::shared_ptr<const FileFacts> facts;
   std::string format;            ///< OIIO format name: "openexr", "png", …

@@ -144,6 +144,7 @@ struct BuildContext {
   double length_scale = 1;
   std::vector<std::string> asked = {};                  ///< inputs that it was read for, also those that it has not
   std::vector<std::string> layers = {};                 ///< names of all layers that it has, for messages
+  std::map<std::string, std::string> hints = {};        ///< of inputs that it has not: what may be meant, for messages
   std::shared_ptr<const Metadata> metadata = {};        ///< of its file; null: unknown
   std::filesystem::path picture = {};                   ///< its file; empty: unknown
   std::shared_ptr<const Metadata> matte_metadata = {};  ///< of the file with mattes beside it; null: there is none

@@ -28,6 +28,14 @@ void warn_without_position(const Explanation& explanation, Diagnostics& diagnost
                                         volume.name));
 }
 
+// Channels that may be meant by inputs that are missing.
+std::string hints_text(const std::vector<std::string>& missing, const BuildContext& context) {
+  std::string text;
+  for (const auto& name : missing)
+    if (const auto hint = context.hints.find(name); hint != context.hints.end()) text += "; " + hint->second;
+  return text;
+}
+
 // What layers there are, where one is missing.
 std::string layers_text(const std::vector<std::string>& missing, const BuildContext& context) {
   constexpr std::size_t kMost = 20;
@@ -99,7 +107,8 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
   for (const auto& input : inputs)
     if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
   if (missing.empty()) return false;
-  const std::string reason = fmt::format("no {} input", join(missing, " and ")) + layers_text(missing, graph.context());
+  const std::string reason = fmt::format("no {} input", join(missing, " and ")) + layers_text(missing, graph.context()) +
+                             hints_text(missing, graph.context());
   if (entry.required)
     throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
                        entry.file, entry.line}};

@@ -63,6 +63,7 @@ BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   context.auxiliary.clear();
   context.asked = picture.asked;
   context.layers = picture.layers;
+  context.hints = picture.hints;
   note_files(picture.facts, context);
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
   return context;
