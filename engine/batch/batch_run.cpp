@@ -203,6 +203,7 @@ Result<void> run_frames(BatchRun& run) {
   AFTERGLOW_CHECK(prepare_notes(run));
   AFTERGLOW_CHECK(check_places(run));
   if (run.notes) loop.note_frames(*run.notes);
+  if (!run.list.more) loop.know_frames(frames);
   const auto run_waiting = [&]() -> Result<void> {
     Schedule schedule =
         earlier ? schedule_with_histories(frames, asked.files, *earlier, options.cuts) : plain_schedule(frames);

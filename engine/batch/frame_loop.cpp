@@ -31,6 +31,7 @@ struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
   std::size_t index = 0;  ///< among the frames that are written
   bool pre_roll = false, restart = false;
+  bool told_later = false;       ///< why it is refused
   ShotSketch sketch;             ///< where cuts are looked for
   std::optional<Error> refused;  ///< by the header; nothing was read
   std::optional<Scaling> scaling;
@@ -46,9 +47,17 @@ FrameLoop::FrameLoop(Session& session, FrameSink& sink, FrameLoopOptions options
       options_(std::move(options)),
       events_(std::move(events)),
       planner_(session, sink, options_),
-      writing_(sink, memory_) {}
+      writing_(sink, memory_),
+      sequences_(events_.diagnostics) {}
 
 FrameLoop::~FrameLoop() = default;
+
+void FrameLoop::know_frames(const FrameRecords& frames) {
+  sequences_.know(frames, [this](const FrameJob& job) {
+    const auto header = read_header(job.input, planner_.read_options(job));
+    return header ? header->auxiliary : std::vector<std::string>();
+  });
+}
 
 Result<void> FrameLoop::run(Schedule& schedule) {
   const auto& frames = schedule.frames;
@@ -133,6 +142,7 @@ Result<void> FrameLoop::close(Result<void> result) {
   auto last = finish_writing(0);
   if (last) last = finish_sink(result);
   events_.end_progress();
+  if (result || result.error().kind == ErrorKind::interrupted) sequences_.sum_up(events_);
   if (full_) return full();
   if (!result) {
     if (result.error().kind == ErrorKind::interrupted && total_ > 1) {
@@ -256,10 +266,12 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->options.memory = &memory_;
   reading->scaling = planner_.scaling_of(planned->header);
   planner_.tell_of_shape(planned->header, frame.job, events_.diagnostics);
-  if (!taken_ || *taken_ != planned->header.taken)
-    taken_ = std::make_shared<const std::map<std::string, std::string>>(planned->header.taken);
-  frame.taken = taken_;
   reading->request = std::move(planned->request);
+  if (auto lacking = sequences_.add(frame, planned->header, reading->options.auxiliary, *reading->request.build)) {
+    reading->refused = std::move(*lacking);
+    reading->told_later = true;
+    return reading;
+  }
   const auto need = planner_.need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {
     reading->refused = need.error();
@@ -302,7 +314,7 @@ Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
     begin_shot();
     gaps_.clear();
   }
-  if (reading->refused) return fail(frame, *reading->refused, reading->pre_roll);
+  if (reading->refused) return fail(frame, *reading->refused, reading->pre_roll, reading->told_later);
   auto picture = reading->picture.get();
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
   frame.begins_shot = begins_shot(*reading);
@@ -462,7 +474,7 @@ Result<void> FrameLoop::finish_writing(std::size_t left) {
 }
 
 /// Notes the failure; returns it when the run ends with it.
-Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
+Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll, bool told_later) {
   frame.state = FrameRecord::State::failed;
   note_gap(frame.job);
   if (frame.job.passing) frame.job.movie.reset();
@@ -474,7 +486,7 @@ Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   }
   if ((total_ == 1 && !endless_) || options_.fail_fast || ends_run(error)) return error;
   ++failed_;
-  events_.failed(error);
+  if (!told_later) events_.failed(error);
   return {};
 }
 

@@ -17,6 +17,7 @@
 #include "batch/run_events.h"
 #include "batch/run_report.h"
 #include "batch/schedule.h"
+#include "batch/sequence_record.h"
 #include "batch/write_queue.h"
 #include "image/cuts.h"
 #include "image/reader.h"
@@ -50,6 +51,8 @@ class FrameLoop {
   }
   /// Each frame gets its FrameJob::made_of. `notes` outlives the loop.
   void note_frames(FrameNotes& notes) { notes_ = &notes; }
+  /// All frames of the run, those that need not be made too: what other frames of a sequence have. They outlive it.
+  void know_frames(const FrameRecords& frames);
   /// Pictures are those of a display's view: Picture::view.
   void show_view() { options_.view = true; }
 
@@ -81,7 +84,7 @@ class FrameLoop {
   Result<void> mend(Reading& reading, Picture& picture);
   Result<void> finish_writing(std::size_t left);
   Result<void> finish_sink(const Result<void>& result);
-  Result<void> fail(FrameRecord& frame, Error error, bool pre_roll = false);
+  Result<void> fail(FrameRecord& frame, Error error, bool pre_roll = false, bool told_later = false);
   Result<void> close(Result<void> result);
   Error full() const;
 
@@ -110,8 +113,8 @@ class FrameLoop {
   int pre_roll_frames_ = 0;              ///< that a part of a sequence runs first
   std::vector<std::size_t> gaps_;        ///< places of frames of its sequence that are not in its history: they failed
   std::optional<int> begun_;             ///< number of the frame that was evaluated last
-  SharedChannels taken_;                  ///< of the frame that was begun last
-  std::deque<SharedSkips> skips_;        ///< of frames so far, the newest first
+  SequenceRecord sequences_;
+  std::deque<SharedSkips> skips_;  ///< of frames so far, the newest first
 };
 
 }  // namespace afterglow

@@ -134,6 +134,7 @@ BuildContext FramePlanner::context_of(const FrameJob& job, const PictureHeader& 
     if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
   context.layers = header.layers;
   context.hints = header.hints;
+  context.notes_lacks = true;  // SequenceRecord tells of them
   note_files(header.facts, context);
   context.frame = job.frame;
   context.fps = job.fps > 0 ? job.fps : options_.fps;

@@ -18,7 +18,7 @@ void add_setting(std::string& out, const SettingHistory& setting) {
 EntryShape shape_of_entry(const StackEntry& entry, const EntryHistory& history) {
   EntryShape shape{
       .name = entry.name, .said = {}, .mask = {}, .place = {}, .members = entry.members, .depth = entry.depth};
-  shape.said = fmt::format("{} {} {}\n", entry.effect, entry.enabled, entry.required);
+  shape.said = fmt::format("{} {} {} {}\n", entry.effect, entry.enabled, entry.required, entry.can_lack);
   for (const auto& setting : history.settings) add_setting(shape.said, setting);
   if (entry.mask) shape.mask = entry.mask->text() + "\n";
   for (const auto& setting : history.composition)

@@ -94,7 +94,8 @@ Result<void> check_setting_of(const StackEntry& entry, const SettingHistory& bef
 
 Result<void> check_entry(const StackEntry& before, const StackEntry& after, const std::vector<PresetEdit>& edits) {
   if (before.effect != after.effect) return differs(before.name, before.effect, after.effect);
-  if (before.required != after.required) return differs(before.name + ".required", "as it is", "another");
+  if (before.required != after.required || before.can_lack != after.can_lack)
+    return differs(before.name + ".required", "as it is", "another");
   const auto mask = [](const StackEntry& entry) { return entry.mask ? entry.mask->text() : "none"; };
   if (mask(before) != mask(after)) return differs(before.name + ".mask", mask(before), mask(after));
   for (const char* key : {"enabled", "order", "at"}) {

@@ -84,6 +84,8 @@ struct Pass {
 struct Skipped {
   std::string name;
   std::string reason;  ///< "intensity is 0", "no depth input", "nobody reads its image"
+  std::vector<std::string> lacks = {};  ///< inputs that it needs and that are not there
+  bool can_lack = false;                ///< the look says that it may be without them
   friend bool operator==(const Skipped&, const Skipped&) = default;
 };
 

@@ -79,7 +79,7 @@ std::string completion_text(const std::vector<EffectSchema>& effects, const std:
       "---@field at? {}  injection point\n"
       "---@field order? integer     place among the effects of the injection point, smaller first\n"
       "---@field enabled? boolean   false: left out, default true\n"
-      "---@field required? boolean  true: a missing input (depth, normal) is an error, default false\n"
+      "---@field required? boolean  true: a missing input (depth, normal) is an error; false: single frames may lack it\n"
       "---@field name? string       how messages and --set call it, default: the effect's name\n"
       "---@field opacity? number|afterglow.Moving  how much of the result counts, 0…1; at 0 the effect does not run, "
       "default 1\n"

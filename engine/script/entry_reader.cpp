@@ -64,7 +64,10 @@ void read_place(TableReader& table, DeclaredEntry& declared) {
                        join(injection_points()), nearest_name(entry.at, injection_points())));
   entry.order = order.value_or(entry.order);
   entry.enabled = table.boolean("enabled").value_or(entry.enabled);
-  entry.required = table.boolean("required").value_or(entry.required);
+  if (const auto required = table.boolean("required")) {
+    entry.required = *required;
+    entry.can_lack = !*required;
+  }
   const auto name = table.text("name");
   if (!name) return;
   declared.name = name;

@@ -114,8 +114,8 @@ class GraphBuilder {
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
   const std::optional<std::string>& skip_reason() const { return skip_reason_; }
 
-  void add_skipped(std::string name, std::string reason) {
-    graph_.skipped.push_back({std::move(name), std::move(reason)});
+  void add_skipped(std::string name, std::string reason, std::vector<std::string> lacks = {}, bool can_lack = false) {
+    graph_.skipped.push_back({std::move(name), std::move(reason), std::move(lacks), can_lack});
   }
   /// The present entry makes `output` of `source`, which stay equal while nothing of `source` is above `limit`: those
   /// of as many channels.

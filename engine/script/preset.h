@@ -64,6 +64,7 @@ struct StackEntry {
   int order = 0;
   bool enabled = true;
   bool required = false;  ///< a missing auxiliary input is an error
+  bool can_lack = false;  ///< the preset says that it is none (`required = false`)
   double opacity = 1;     ///< of the frame
   std::string blend = "normal";
   std::shared_ptr<const EntryMask> mask;  ///< null: everywhere
@@ -142,6 +143,8 @@ struct BuildContext {
   /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings
   /// in px are lengths of that picture. A stack's `reference_height` goes before it.
   double length_scale = 1;
+  /// What is skipped for lack of an input is not warned about: whoever evaluates tells it by Graph::skipped.
+  bool notes_lacks = false;
   std::vector<std::string> asked = {};                  ///< inputs that it was read for, also those that it has not
   std::vector<std::string> layers = {};                 ///< names of all layers that it has, for messages
   std::map<std::string, std::string> hints = {};        ///< of inputs that it has not: what may be meant, for messages

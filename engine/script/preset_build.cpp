@@ -112,8 +112,8 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
   if (entry.required)
     throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
                        entry.file, entry.line}};
-  graph.add_skipped(entry.name, reason);
-  warn_skipped(entry, reason, diagnostics);
+  graph.add_skipped(entry.name, reason, missing, entry.can_lack);
+  if (!graph.context().notes_lacks) warn_skipped(entry, reason, diagnostics);
   return true;
 }
 
