@@ -16,6 +16,7 @@
 
 #include "apps/command.h"
 #include "apps/commit.h"
+#include "apps/driver_cache.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "apps/output.h"
@@ -202,6 +203,7 @@ int run(Console& console, int argc, char** argv, Work work) {
   if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
   if (work == Work::parsing) return 0;
   messages.apply(console);
+  if (const auto told = avoid_full_driver_cache()) console.diagnostics().note(*told);
   const Command& command = *parsed_command(commands);
   const auto done = command.run(console);
   return done ? 0 : fail(console, named(done.error(), command));
