@@ -3,14 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <limits>
+#include <string>
 
 #include "apps/interrupt.h"
+#include "image/sequence.h"
 
 namespace afterglow {
 namespace {
 
 constexpr double kUntilStopped = std::numeric_limits<double>::infinity();
+
+/// "shot.0004.exr: the header is truncated"
+std::string why_text(const Error& error) {
+  const std::string name = std::filesystem::path(error.file).filename().string();
+  return name.empty() ? error.message : fmt::format("{}: {}", name, error.message);
+}
 
 /// The first picture and a good build, before the clock runs.
 Result<void> show_first(Player& player) {
@@ -49,7 +58,8 @@ Result<void> play_headless(Player& player, const HeadlessOptions& options) {
   if (stats.shown == 0 && player.shown().unreadable) return *player.shown().unreadable;
   if (stats.unreadable > 0)
     return Error{ErrorKind::io,
-                 fmt::format("{} of {} frames could not be read", stats.unreadable, player.frames_had())};
+                 fmt::format("{} of {} frames could not be read: {}; {}", stats.unreadable, player.frames_had(),
+                             frames_text(stats.unreadable_frames), why_text(*stats.first_unreadable))};
   return {};
 }
 

@@ -113,6 +113,7 @@ std::string play_report_json(const PlayReport& report, Player& player) {
   out["frames"] = Json{{"shown", stats.shown},           {"dropped", stats.dropped}, {"late", stats.late},
                        {"unreadable", stats.unreadable}, {"kept", stats.kept},       {"rebuilding", stats.rebuilding},
                        {"last", player.shown().number}};
+  if (!stats.unreadable_frames.empty()) out["frames"]["unreadable_frames"] = stats.unreadable_frames;
   out["milliseconds"] = Json{{"startup", report.startup},
                              {"wall", report.wall},
                              {"interval", json_of(stats.interval)},

@@ -60,6 +60,13 @@ double Figures::fps() const {
   return sum > 0 ? 1000 * static_cast<double>(frames) / sum : 0;
 }
 
+void Figures::frame_unreadable(int number, const Error& why) {
+  constexpr std::size_t kMost = 10000;
+  ++unreadable_;
+  if (unreadable_frames_.size() < kMost) unreadable_frames_.insert(number);
+  if (!first_unreadable_) first_unreadable_ = why;
+}
+
 PlayerStats Figures::stats() const {
   PlayerStats stats;
   stats.interval = Percentiles::of({intervals_.begin(), intervals_.end()});
@@ -68,7 +75,9 @@ PlayerStats Figures::stats() const {
   stats.rebuilding = rebuilding;
   stats.shown = shown_;
   stats.late = late;
-  stats.unreadable = unreadable;
+  stats.unreadable = unreadable_;
+  stats.unreadable_frames.assign(unreadable_frames_.begin(), unreadable_frames_.end());
+  stats.first_unreadable = first_unreadable_;
   stats.kept = kept;
   stats.reloads = reloads_;
   stats.latencies.assign(latencies_.begin(), latencies_.end());

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "core/result.h"
 #include "play/read_ahead.h"
 #include "session/live.h"
 
@@ -30,13 +33,15 @@ struct ReloadLatency {
 };
 
 struct PlayerStats {
-  Percentiles interval;          ///< between frames while playing
-  Percentiles work;              ///< for a frame while playing, on the drawing thread: upload and passes
-  double fps = 0;                ///< of the last frames; 0 while paused
-  std::uint64_t shown = 0;       ///< frames put on screen
-  std::uint64_t dropped = 0;     ///< due and never shown
-  std::uint64_t late = 0;        ///< times that the due picture had not been read yet
-  std::uint64_t unreadable = 0;  ///< frames that could not be read
+  Percentiles interval;                ///< between frames while playing
+  Percentiles work;                    ///< for a frame while playing, on the drawing thread: upload and passes
+  double fps = 0;                      ///< of the last frames; 0 while paused
+  std::uint64_t shown = 0;             ///< frames put on screen
+  std::uint64_t dropped = 0;           ///< due and never shown
+  std::uint64_t late = 0;              ///< times that the due picture had not been read yet
+  std::uint64_t unreadable = 0;        ///< frames that could not be read
+  std::vector<int> unreadable_frames;  ///< their numbers, each once; at most 10,000
+  std::optional<Error> first_unreadable;
   std::uint64_t kept = 0;        ///< frames shown that needed no pass: the same content and settings
   std::uint64_t rebuilding = 0;  ///< frames due while their structure was being built: the one before stayed
   std::uint64_t reloads = 0;     ///< builds taken
@@ -56,16 +61,19 @@ class Figures {
   void presented(double milliseconds);
   PlayerStats stats() const;
   double fps() const;  ///< PlayerStats::fps
-  std::uint64_t frames_had() const { return shown_ + unreadable; }
+  void frame_unreadable(int number, const Error& why);
+  std::uint64_t frames_had() const { return shown_ + unreadable_; }
 
-  std::uint64_t late = 0, unreadable = 0, kept = 0, rebuilding = 0;
+  std::uint64_t late = 0, kept = 0, rebuilding = 0;
 
  private:
   std::deque<double> intervals_, work_;
   std::deque<ReloadLatency> latencies_;
   bool awaiting_present_ = false;
   double last_ = -1;
-  std::uint64_t shown_ = 0, reloads_ = 0;
+  std::uint64_t shown_ = 0, unreadable_ = 0, reloads_ = 0;
+  std::set<int> unreadable_frames_;
+  std::optional<Error> first_unreadable_;
 };
 
 }  // namespace afterglow

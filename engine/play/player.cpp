@@ -320,7 +320,7 @@ Result<bool> Player::State::show_due(double now) {
   if (read->error) {
     reread = false;
     transport.shown(due);
-    ++figures.unreadable;
+    figures.frame_unreadable(frame.number, *read->error);
     return true;
   }
   const auto may_change = [](LiveSession* session) {

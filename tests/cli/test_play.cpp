@@ -153,7 +153,8 @@ TEST_F(Play, FramesThatCannotBeReadAreCountedAndTheRestGoesOn) {
   make_truncated_exr("in/shot.0002.exr");
   const Outcome outcome = play({"in/shot.####.exr", "--headless", "--fast", "--report", "play.json"});
   EXPECT_EQ(outcome.exit_code, kFiles);
-  EXPECT_THAT(outcome.err, HasSubstr("1 of 4 frames could not be read"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 4 frames could not be read: 2; shot.0002.exr: "));
+  EXPECT_EQ(report().at("frames").at("unreadable_frames"), (std::vector<int>{2}));
   EXPECT_EQ(report().at("frames").at("shown"), 3);
   EXPECT_EQ(report().at("frames").at("unreadable"), 1);
 }
