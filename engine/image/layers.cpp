@@ -161,9 +161,11 @@ std::vector<std::string> channel_names(const std::vector<FilePart>& parts) {
   return names;
 }
 
-/// The list in an error: long ones are cut.
-std::string listed(const std::vector<std::string>& names) {
+/// The list in an error: long ones are cut, names with commas or spaces are in quotation marks, as they are typed.
+std::string listed(std::vector<std::string> names) {
   constexpr std::size_t kMost = 40;
+  for (std::string& name : names)
+    if (name.find_first_of(", ") != std::string::npos) name = "'" + name + "'";
   if (names.size() <= kMost) return join(names);
   return join(std::vector<std::string>(names.begin(), names.begin() + kMost)) +
          fmt::format(" and {} more", names.size() - kMost);

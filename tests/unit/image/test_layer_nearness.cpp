@@ -152,6 +152,15 @@ TEST(LayerNearness, OthersAsNearAreTold) {
   EXPECT_THAT(equal_depths(own, ""), IsEmpty());
 }
 
+TEST(LayerNearness, NamesWithCommasAndSpacesAreListedInQuotationMarks) {
+  const Parts parts{part(with(rgb("key light, warm."), rgb("fill.")))};
+  EXPECT_EQ(choice_text(parts, find_color(parts, "key light, warm").value()), "key light, warm.RGB");
+  const auto missing = find_color(parts, "key light");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().allowed, HasSubstr("'key light, warm', fill, 'key light, warm.R'"));
+  EXPECT_EQ(missing.error().nearest, "key light, warm");
+}
+
 TEST(LayerNearness, AnotherFileIsAskedForTheSameEye) {
   const Parts color{part(rgb(""), "left", "left"), part(rgb(""), "right", "right")};
   const Parts depths{part({"Z"}, "left", "left"), part({"Z"}, "right", "right")};
