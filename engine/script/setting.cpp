@@ -59,9 +59,11 @@ constexpr double kMaxInteger = 2147483647;
 
 /// The value within the bounds. What goes beyond one by no more than a 32-bit float's rounding (of the bound, or of 1)
 /// is the bound, as of sums of animated values: 0.05 + 0.9 is more than 0.95, 0.3 − 0.1·3 less than 0. None: out of
-/// range. Colours have a bound of their own, 0.
+/// range. Whole numbers are exact. Colours have a bound of their own, 0.
 std::optional<double> within(const SettingSchema& schema, double value) {
-  const auto slack = [](double bound) { return 6e-8 * std::max(std::abs(bound), 1.0); };
+  const auto slack = [&](double bound) {
+    return schema.type == SettingType::integer ? 0 : 6e-8 * std::max(std::abs(bound), 1.0);
+  };
   std::optional<double> min = schema.min;
   if (schema.type == SettingType::color) min = std::max(min.value_or(0), 0.0);
   if (min && value < *min) return *min - value <= slack(*min) ? min : std::nullopt;

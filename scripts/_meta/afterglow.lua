@@ -9,7 +9,7 @@
 ---@field at? "after_opaque_and_sky"|"before_post_process"|"post_process"|"after_post_process"  injection point
 ---@field order? integer     place among the effects of the injection point, smaller first
 ---@field enabled? boolean   false: left out, default true
----@field required? boolean  true: a missing input (depth, normal) is an error, default false
+---@field required? boolean  true: a missing input (depth, normal) is an error; false: single frames may lack it
 ---@field name? string       how messages and --set call it, default: the effect's name
 ---@field opacity? number|afterglow.Moving  how much of the result counts, 0…1; at 0 the effect does not run, default 1
 ---@field blend? afterglow.Blend|afterglow.OfTime  how it is put over what the effect was given, default "normal"
@@ -517,7 +517,7 @@
 ---What has a number in a pass of numbers: an object or a material by its pass index, an object ID.
 ---@class afterglow.masks.id : afterglow.MaskKeys
 ---@field feather? number|afterglow.Moving  Softens the mask: the standard deviation of a Gaussian over it. 0: as it is. 0…200 px, default 0
----@field index? integer|afterglow.Moving  Which number. For several, add masks. integer 0…16777215, default 1
+---@field index? integer|afterglow.Moving  Which number: up to 16777215, floats hold no larger ones exactly. For several, add masks. integer 0…16777215, default 1
 ---@field layer? string|afterglow.OfTime  The pass: IndexOB (objects) or IndexMA (materials) of Blender, whatever the renderer calls it. default "IndexOB"
 ---@field antialias? boolean|afterglow.OfTime  Smooths the edges over 3 × 3 pixels; a pass of numbers has hard ones. default false
 

@@ -9,7 +9,7 @@ return fx.effect {
   name = "id",
   doc = "What has a number in a pass of numbers: an object or a material by its pass index, an object ID.",
   settings = {
-    index = fx.int { min = 0, max = 16777215, default = 1, doc = "Which number. For several, add masks." },
+    index = fx.int { min = 0, max = 16777215, default = 1, doc = "Which number: up to 16777215, floats hold no larger ones exactly. For several, add masks." },
     layer = fx.text { default = "IndexOB", doc = "The pass: IndexOB (objects) or IndexMA (materials) of Blender, whatever the renderer calls it." },
     antialias = fx.bool { default = false, doc = "Smooths the edges over 3 × 3 pixels; a pass of numbers has hard ones." },
     feather = feather.setting,

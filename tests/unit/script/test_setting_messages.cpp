@@ -258,6 +258,17 @@ TEST_F(SettingMessages, BeyondABoundByARoundingIsTheBound) {
   EXPECT_NE(scene.load_error().find("is out of range"), std::string::npos);
 }
 
+TEST_F(SettingMessages, WholeNumbersAreExactAtTheirEnds) {
+  scene.effect("ids", R"(
+      settings = { index = fx.int { min = 0, max = 16777215, default = 0 } },
+      build = function(g, s, source) return source end,)");
+  const std::string range = " is out of range; allowed: integer 0…16777215";
+  EXPECT_EQ(error("fx.ids { index = 16777216 }"), "preset.lua:3: error: ids.index = 16777216" + range);
+  EXPECT_EQ(error("fx.ids { index = 4000000000 }"), "preset.lua:3: error: ids.index = 4000000000" + range);
+  scene.stack("fx.ids { index = 16777215 }");
+  EXPECT_TRUE(scene.load());
+}
+
 TEST_F(SettingMessages, ValuesThatAreFine) {
   scene.stack(
       R"(fx.glow { steps = 4.0, tint = "#ff8000", shift = { -8, 8 }, mode = "scattering", fade = true, gain = -0.0 },
