@@ -142,7 +142,7 @@ Result<void> FrameLoop::close(Result<void> result) {
   auto last = finish_writing(0);
   if (last) last = finish_sink(result);
   events_.end_progress();
-  if (result || result.error().kind == ErrorKind::interrupted) sequences_.sum_up(events_);
+  if (result || result.error().kind == ErrorKind::interrupted) sequences_.sum_up(events_, static_cast<bool>(result));
   if (full_) return full();
   if (!result) {
     if (result.error().kind == ErrorKind::interrupted && total_ > 1) {

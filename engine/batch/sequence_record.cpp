@@ -48,23 +48,22 @@ void tell_inputs(const std::string& file, const SequenceInputs& inputs, const Ru
   }
 }
 
-void tell_shapes(const std::string& file, const SequenceShapes& shapes, Diagnostics& diagnostics) {
-  if (shapes.size() < 2) return;
-  const auto usual = std::ranges::max_element(shapes, {}, [](const auto& shape) { return shape.second.size(); });
+std::string overscan_text(const Overscan& overscan) {
+  if (overscan == Overscan{}) return "none";
+  return fmt::format("{} pixels left, {} above, {} right, {} below", overscan[0], overscan[1], overscan[2],
+                     overscan[3]);
+}
+
+void tell_overscan(const std::string& file, const SequenceOverscan& overscan, Diagnostics& diagnostics) {
+  if (overscan.size() < 2) return;
+  const auto usual = std::ranges::max_element(overscan, {}, [](const auto& one) { return one.second.size(); });
   std::vector<int> others;
-  bool sizes = false;
-  for (auto shape = shapes.begin(); shape != shapes.end(); ++shape) {
-    if (shape == usual) continue;
-    others.insert(others.end(), shape->second.begin(), shape->second.end());
-    sizes = sizes || shape->first.display != usual->first.display;
-  }
-  const Size whole = usual->first.data.size(), display = usual->first.display;
-  diagnostics.warn(sizes ? fmt::format("{}: {}: the size is another than the {}×{} pixels of other frames", file,
-                                       numbers_text(others), display.width, display.height)
-                         : fmt::format("{}: {}: the overscan is another than in other frames, which have {}×{} pixels "
-                                       "with it: centres, heights and data windows of EXRs jump; --overscan cut leaves "
-                                       "it out of all",
-                                       file, numbers_text(others), whole.width, whole.height));
+  for (auto one = overscan.begin(); one != overscan.end(); ++one)
+    if (one != usual) others.insert(others.end(), one->second.begin(), one->second.end());
+  diagnostics.warn(
+      fmt::format("{}: {}: the overscan is another than in other frames, which have {}: centres, heights "
+                  "and data windows of EXRs jump; --overscan cut leaves it out of all",
+                  file, numbers_text(others), overscan_text(usual->first)));
 }
 
 }  // namespace
@@ -134,8 +133,9 @@ std::optional<Error> SequenceRecord::add(FrameRecord& frame, const PictureHeader
   }
   Sequence& sequence = sequences_[without_frame_number(job.input)];
   const Rect &data = header.data_window, &display = header.display_window;
-  sequence.shapes[{{data.x - display.x, data.y - display.y, data.width, data.height}, display.size()}].push_back(
-      job.frame);
+  const Overscan around{display.x - data.x, display.y - data.y, data.x + data.width - display.x - display.width,
+                        data.y + data.height - display.y - display.height};
+  sequence.overscan[around].push_back(job.frame);
   std::optional<Error> error;
   for (const std::string& name : wanted) {
     SequenceInput& input = sequence.inputs[name];
@@ -149,10 +149,10 @@ std::optional<Error> SequenceRecord::add(FrameRecord& frame, const PictureHeader
   return error;
 }
 
-void SequenceRecord::sum_up(const RunEvents& events) {
+void SequenceRecord::sum_up(const RunEvents& events, bool whole) {
   for (const auto& [file, sequence] : std::exchange(sequences_, {})) {
     tell_inputs(file, sequence.inputs, events);
-    tell_shapes(file, sequence.shapes, events.diagnostics);
+    if (whole) tell_overscan(file, sequence.overscan, events.diagnostics);
   }
 }
 

@@ -3,17 +3,16 @@
 // frame would be gone) and overscan; and which channels each took.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "batch/run_events.h"
 #include "batch/run_report.h"
-#include "core/geometry.h"
 #include "image/reader.h"
 #include "script/build.h"
 
@@ -28,18 +27,9 @@ struct SequenceInput {
 };
 using SequenceInputs = std::map<std::string, SequenceInput>;
 
-struct FrameShape {
-  Rect data;  ///< counted from the display window
-  Size display;
-  friend bool operator==(const FrameShape&, const FrameShape&) = default;
-  friend bool operator<(const FrameShape& a, const FrameShape& b) { return a.key() < b.key(); }
-
- private:
-  std::tuple<int, int, int, int, int, int> key() const {
-    return {data.x, data.y, data.width, data.height, display.width, display.height};
-  }
-};
-using SequenceShapes = std::map<FrameShape, std::vector<int>>;  ///< with the numbers of their frames
+/// Pixels around the display window: left, top, right, bottom.
+using Overscan = std::array<int, 4>;
+using SequenceOverscan = std::map<Overscan, std::vector<int>>;  ///< with the numbers of their frames
 
 /// Used from one thread. Sequences are files whose names differ in a number alone; frames of videos are none.
 class SequenceRecord {
@@ -57,12 +47,13 @@ class SequenceRecord {
                            const Build& build);
   /// Tells of the frames that failed so, that were made without an input which others have, and whose overscan is
   /// another: each in one message. Forgets them.
-  void sum_up(const RunEvents& events);
+  /// `whole`: all frames are done; of some alone nobody knows what is usual.
+  void sum_up(const RunEvents& events, bool whole);
 
  private:
   struct Sequence {
     SequenceInputs inputs;
-    SequenceShapes shapes;
+    SequenceOverscan overscan;
   };
   bool is_elsewhere(const FrameJob& job, const std::string& name, SequenceInput& input) const;
   void warn_skipped(const Skipped& skipped) const;

@@ -96,7 +96,8 @@ TEST_F(InputGaps, OtherOverscanIsTold) {
   make_preset("plain.lua");
   const Outcome outcome = run({"run", "plain.lua", "over.####.exr", "-o", "out/"});
   EXPECT_EQ(outcome.exit_code, kDone);
-  EXPECT_THAT(outcome.err, HasSubstr("over.*.exr: frames 2-3: the overscan is another than in other frames"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("over.*.exr: frames 2-3: the overscan is another than in other frames, which have none: "));
   EXPECT_EQ(pixels_of("out/over.0002.exr").size(), 40u * 32 * 3);
   const Outcome cut = run({"run", "plain.lua", "over.####.exr", "-o", "out/", "--overscan", "cut"});
   EXPECT_EQ(cut.err, "");
