@@ -191,6 +191,11 @@ bool transport_ends_early(const PlacedBytes& bytes) {
   return false;
 }
 
+/// JPEGs one behind the other: the last one has its end.
+bool jpegs_end_early(const PlacedBytes& bytes) {
+  return bytes.size < 2 || bytes.look(bytes.size - 2, 2) != "\xff\xd9"sv;
+}
+
 }  // namespace
 
 bool ends_early(std::string_view format, const PlacedBytes& bytes, std::uint64_t last) {
@@ -198,6 +203,7 @@ bool ends_early(std::string_view format, const PlacedBytes& bytes, std::uint64_t
   if (container != kContainers.end()) return ends_in_a_part(*container, bytes);
   if (format == "yuv4mpegpipe") return last > 0 && last < bytes.size;
   if (format == "gif") return gif_ends_early(bytes);
+  if (format == "mjpeg") return jpegs_end_early(bytes);
   if (format == "nut") return nut_ends_early(bytes);
   return format == "mpegts" && transport_ends_early(bytes);
 }

@@ -60,7 +60,8 @@ class Movie {
 class MovieStream {
  public:
   /// `raw`: "1920x1080:rgb48le:24", the last part may be missing; else the bytes say what they are (Y4M, NUT, Matroska,
-  /// MPEG transport streams, PPM, PGM, PAM, PFM). `head`: bytes that were read already. Errors: usage (`raw`), io.
+  /// MPEG transport streams, PPM, PGM, PAM, PFM, several JPEGs). `head`: bytes that were read already. Errors: usage
+  /// (`raw`), io.
   static Result<std::unique_ptr<MovieStream>> open(std::shared_ptr<FileDescriptor> from, std::string head,
                                                    const std::string& raw, const SizeLimits& limits,
                                                    Diagnostics& diagnostics);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "core/text.h"
 #include "image/ffmpeg_module.h"
 #include "image/movie.h"
+#include "image/several_pictures.h"
 
 namespace afterglow {
 namespace {
@@ -91,37 +93,49 @@ Result<std::string> first_bytes(PatientReader& from) {
   return std::string(bytes.data(), have);
 }
 
-/// Looks for a second PNG behind the first, as bytes come: `run -o - --format png` writes them so, and only the first
-/// would be read.
-class PngEnd {
+/// What has come so far, for as long as it is looked at.
+class Mapped {
  public:
-  explicit PngEnd(std::string_view head) : is_png_(head.starts_with(kSignature)) {}
-
-  /// True: another picture begins in what came.
-  bool another(std::string_view bytes) {
-    if (!is_png_) return false;
-    const std::string text = kept_ + std::string(bytes);
-    constexpr std::string_view kNext = "IEND\xae\x42\x60\x82\x89PNG"sv;
-    if (text.find(kNext) != std::string::npos) return true;
-    kept_ = text.substr(text.size() - std::min(text.size(), kNext.size()));
-    return false;
+  Mapped(int descriptor, std::size_t size) : size_(size) {
+    bytes_ = size > 0 ? mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0) : MAP_FAILED;
+  }
+  ~Mapped() {
+    if (bytes_ != MAP_FAILED) munmap(bytes_, size_);
+  }
+  Mapped(const Mapped&) = delete;
+  Mapped& operator=(const Mapped&) = delete;
+  std::string_view bytes() const {
+    return bytes_ == MAP_FAILED ? std::string_view() : std::string_view(static_cast<const char*>(bytes_), size_);
   }
 
  private:
-  static constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n"sv;
-  bool is_png_;
-  std::string kept_;  ///< the end of what came before
+  std::size_t size_;
+  void* bytes_;
 };
 
-Result<std::shared_ptr<const MemoryFile>> whole_file(PatientReader& from, const std::string& head,
-                                                     const SizeLimits& limits) {
+/// A file that was read to its end, or the beginning of frames that a video reader takes.
+struct WholeFile {
+  std::shared_ptr<const MemoryFile> file;
+  std::string head;  ///< of a stream of frames; "": it is a file
+};
+
+/// Looks for a second picture behind the first each time that twice as much has come, so that neither a long stream is
+/// read to its end in vain nor its bytes are looked at over and over.
+Result<WholeFile> whole_file(PatientReader& from, const std::string& head, const SizeLimits& limits) {
+  WholeFile whole;
   AFTERGLOW_TRY(MemoryFile file, MemoryFile::create());
-  const FileDescriptor out(::open(file.name().c_str(), O_WRONLY | O_CLOEXEC));
+  const FileDescriptor out(::open(file.name().c_str(), O_RDWR | O_CLOEXEC));
   std::uint64_t size = 0;
-  PngEnd end(head);
+  const auto look = [&]() -> Result<void> {
+    const Mapped so_far(out.get(), size);
+    const auto several = first_of_several(so_far.bytes());
+    if (several && several->video.empty())
+      return in_stream(
+          fmt::format("holds several {}s; frames come as PPM, PAM, PFM, Y4M, JPEG or a video", several->kind));
+    if (several) whole.head = so_far.bytes();
+    return {};
+  };
   const auto put = [&](const char* bytes, std::size_t count) -> Result<void> {
-    if (end.another({bytes, count}))
-      return in_stream("holds several PNGs; frames come as PPM, PAM, PFM, Y4M or a video");
     size += count;
     if (size > limits.max_bytes) return in_stream("is larger than --max-memory allows");
     while (count > 0) {
@@ -135,13 +149,17 @@ Result<std::shared_ptr<const MemoryFile>> whole_file(PatientReader& from, const 
   };
   AFTERGLOW_CHECK(put(head.data(), head.size()));
   std::vector<char> buffer(1 << 16);
-  while (true) {
+  std::uint64_t next_look = 2 * size;
+  while (whole.head.empty()) {
     const auto got = from.read(buffer.data(), buffer.size());
     if (!got) return of_stream(got.error());
-    if (*got == 0) break;
     AFTERGLOW_CHECK(put(buffer.data(), *got));
+    if (*got == 0 || size >= next_look) AFTERGLOW_CHECK(look());
+    if (size >= next_look) next_look = 2 * size;
+    if (*got == 0) break;
   }
-  return std::make_shared<const MemoryFile>(std::move(file));
+  whole.file = std::make_shared<const MemoryFile>(std::move(file));
+  return whole;
 }
 
 }  // namespace
@@ -172,6 +190,12 @@ Result<std::unique_ptr<MovieStream>> MovieStream::open(std::shared_ptr<FileDescr
     AFTERGLOW_TRY(request.options, raw_options(raw));
   } else {
     request.format = stream_format(request.head);
+    const auto several = request.format.empty() ? first_of_several(request.head) : std::nullopt;
+    if (several) request.format = several->video;
+    if (several && !several->leaves.empty())
+      diagnostics.warn(
+          fmt::format("{}: holds several {}s, which are read as a video: their {} is not used, sRGB is taken", kName,
+                      several->kind, several->leaves));
   }
   const auto module = ffmpeg_module();
   if (!module) return in_stream(module.error().message);
@@ -229,7 +253,13 @@ Result<StandardInput> open_standard_input(const std::string& raw, const SizeLimi
   if (!raw.empty() || !stream_format(head).empty()) {
     AFTERGLOW_TRY(input.stream, MovieStream::open(std::move(descriptor), std::move(head), raw, limits, diagnostics));
   } else {
-    AFTERGLOW_TRY(input.file, whole_file(reader, head, limits));
+    AFTERGLOW_TRY(WholeFile whole, whole_file(reader, head, limits));
+    input.file = std::move(whole.file);
+    if (!whole.head.empty()) {
+      input.file = nullptr;
+      AFTERGLOW_TRY(input.stream,
+                    MovieStream::open(std::move(descriptor), std::move(whole.head), raw, limits, diagnostics));
+    }
   }
   return input;
 }

@@ -107,6 +107,39 @@ TEST_F(Streams, FilesThatLookLikeOptionsAreNamed) {
   EXPECT_EQ(run({"run", "look.lua", "./-a.exr", "-o", "o.png"}).exit_code, kDone);
 }
 
+/// Each as files hold them, one behind the other: none is dropped without a word.
+TEST_F(Streams, SeveralPicturesOnStandardInput) {
+  make_preset("look.lua");
+  make_exr("a.exr", 64, 48);
+  for (const std::string format : {"png", "exr", "tif", "dpx", "hdr", "cin", "webp"}) {
+    ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "one." + format}).exit_code, kDone) << format;
+    EXPECT_EQ(shell("\"$AFTERGLOW\" run look.lua - -o alone.png <one." + format).exit_code, kDone) << format;
+    const Outcome outcome =
+        shell("cat one." + format + " one." + format + " | \"$AFTERGLOW\" run look.lua - -o out.####.png");
+    EXPECT_EQ(outcome.exit_code, kFiles) << format;
+    EXPECT_TRUE(is_one_error_line(outcome.err)) << format << ": " << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("s; frames come as PPM, PAM, PFM, Y4M, JPEG or a video")) << format;
+  }
+}
+
+TEST_F(Streams, JpegsOnStandardInputAreFrames) {
+  if (shell("command -v ffmpeg >/dev/null").exit_code != 0) GTEST_SKIP() << "the program ffmpeg is not installed";
+  make_preset("look.lua");
+  const auto frames = [&](const std::string& command, const std::string& name) {
+    const Outcome outcome = shell(command + " | \"$AFTERGLOW\" run look.lua - -o " + name + ".##.png");
+    EXPECT_THAT(outcome.err, outcome.exit_code == kDone ? IsEmpty() : HasSubstr("frame 10 is cut off"));
+    int count = 0;
+    while (fs::exists(path(name + (count < 9 ? ".0" : ".") + std::to_string(count + 1) + ".png"))) ++count;
+    return count;
+  };
+  const std::string made = "ffmpeg -v error -f lavfi -i testsrc=size=64x48:rate=25:d=0.4 -f image2pipe -c:v mjpeg ";
+  EXPECT_EQ(frames(made + "-", "small"), 10);
+  ASSERT_EQ(shell(made + "-y all.mjpeg").exit_code, 0);
+  EXPECT_EQ(frames("head -c -100 all.mjpeg", "cut"), 9);
+  EXPECT_NE(read("small.01.png"), read("small.10.png"));
+  EXPECT_EQ(read("small.09.png"), read("cut.09.png"));
+}
+
 class Signals : public Streams, public ::testing::WithParamInterface<int> {};
 
 TEST_P(Signals, EndASequenceAndLeaveNothingHalfWritten) {
