@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "core/ascii.h"
+#include "core/decomposed.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -106,6 +107,33 @@ std::string range_text(int first, int last, int step) {
   return step == 1 ? fmt::format("{}-{}", first, last) : fmt::format("{}-{}x{}", first, last, step);
 }
 
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+/// What stands between two parts of a name, whichever way its letters are written; nothing: it has other parts.
+std::optional<std::string> between(const std::string& name, const std::string& stem, const std::string& suffix) {
+  const auto cut = [](const auto& whole, const auto& front, const auto& back) {
+    const bool fits = whole.size() > front.size() + back.size() && whole.starts_with(front) && whole.ends_with(back);
+    return fits ? std::optional(whole.substr(front.size(), whole.size() - front.size() - back.size())) : std::nullopt;
+  };
+  if (auto middle = cut(name, stem, suffix)) return middle;
+  if (is_ascii(stem) && is_ascii(suffix)) return std::nullopt;
+  const auto middle = cut(decomposed(name), decomposed(stem), decomposed(suffix));
+  if (!middle || !std::ranges::all_of(*middle, [](char32_t c) { return c < 0x80; })) return std::nullopt;
+  return std::string(middle->begin(), middle->end());
+}
+
+/// The pattern of a file whose name differs in the case of its letters alone; "": it differs otherwise.
+std::string pattern_in_case(const fs::path& folder, const std::string& name, const std::string& stem,
+                            const std::string& suffix) {
+  const auto middle = between(lower(name), lower(stem), lower(suffix));
+  if (!middle || !is_number(*middle) || !lower(name).starts_with(lower(stem))) return "";
+  const auto digits = static_cast<std::size_t>(std::ranges::count_if(*middle, is_digit));
+  return (folder / name.substr(0, stem.size())).string() + std::string(digits, '#') +
+         name.substr(stem.size() + middle->size());
+}
+
 bool looks_like_place(const std::string& folder) {
   return folder.find('#') != std::string::npos || folder.find("%0") != std::string::npos ||
          folder.find("%d") != std::string::npos;
@@ -190,10 +218,14 @@ fs::path Pattern::file_with_sign(int frame) const {
 }
 
 fs::path Pattern::existing(int frame) const {
-  if (!numbered || frame >= 0) return file(frame);
+  const fs::path asked = file(frame);
   std::error_code ec;
-  const fs::path other = file_with_sign(frame);
-  return !fs::exists(file(frame), ec) && fs::exists(other, ec) ? other : file(frame);
+  if (!numbered || fs::exists(asked, ec)) return asked;
+  for (const fs::path& one : {asked, file_with_sign(frame)})
+    for (const std::string& name :
+         {one.filename().string(), put_together(one.filename().string()), taken_apart(one.filename().string())})
+      if (const fs::path other = one.parent_path() / name; other != asked && fs::exists(other, ec)) return other;
+  return asked;
 }
 
 void LeftOut::add(const fs::path& file) {
@@ -268,25 +300,25 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
   const fs::path folder = prefix.has_parent_path() ? prefix.parent_path() : fs::path(".");
   const std::string stem = prefix.filename().string();
   LeftOut others;
+  std::string in_case;  // a pattern with other letters of the same names
   std::error_code ec;
   fs::directory_iterator entry(folder, ec);
   if (ec)
     return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
   for (; !ec && entry != fs::directory_iterator(); entry.increment(ec)) {
     const std::string name = entry->path().filename().string();
-    if (name.size() <= stem.size() + pattern.suffix.size() || !name.starts_with(stem) ||
-        !name.ends_with(pattern.suffix))
+    const auto middle = between(name, stem, pattern.suffix);
+    if (!middle || !is_number(*middle)) {
+      if (in_case.empty()) in_case = pattern_in_case(prefix.parent_path(), name, stem, pattern.suffix);
       continue;
-    const std::string middle = name.substr(stem.size(), name.size() - stem.size() - pattern.suffix.size());
-    if (!is_number(middle)) continue;
-    std::string_view rest = middle;
+    }
+    std::string_view rest = *middle;
     const auto frame = take_number(rest);
-    // Only the spelling that the pattern itself makes: "shot.007" is no frame of shot.#.
-    const auto is = [&](const fs::path& file) { return file.filename() == name; };
-    if (frame && is(pattern.file(*frame))) {
-      found.push_back({*frame, pattern.file(*frame)});
-    } else if (frame && is(pattern.file_with_sign(*frame))) {
-      found.push_back({*frame, pattern.file_with_sign(*frame)});
+    // Only the number that the pattern itself makes: "shot.007" is no frame of shot.#.
+    const auto is = [&](const fs::path& file) { return same_letters(file.filename().string(), name); };
+    if (frame && (is(pattern.file(*frame)) || is(pattern.file_with_sign(*frame)))) {
+      const bool as_written = pattern.file(*frame).filename() == name;
+      found.push_back({*frame, as_written ? pattern.file(*frame) : prefix.parent_path() / name});
     } else {
       others.add(entry->path());
     }
@@ -295,9 +327,10 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
     return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
   if (found.empty()) {
     Error error{ErrorKind::io, "no file matches this pattern", shown};
+    error.nearest = in_case;
     if (others.files == 0) return error;
     const std::string name = others.first.filename().string();
-    const std::string middle = name.substr(stem.size(), name.size() - stem.size() - pattern.suffix.size());
+    const std::string middle = between(name, stem, pattern.suffix).value_or("");
     const auto digits = static_cast<std::size_t>(std::ranges::count_if(middle, is_digit));
     error.message +=
         fmt::format(": it has {} digit{}, and {} has {}", pattern.digits, pattern.digits == 1 ? "" : "s", name, digits);

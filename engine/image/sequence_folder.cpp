@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/ascii.h"
+#include "core/decomposed.h"
 #include "core/text.h"
 #include "image/picture_format.h"
 #include "image/sequence.h"
@@ -18,8 +19,9 @@ namespace {
 struct Numbered {
   std::size_t digits = kMostFrameDigits + 1, files = 0;
   fs::path example;
+  std::pair<std::string, std::string> name;  ///< before and behind the number, as one of the files has it
 };
-/// By what stands before and behind the number.
+/// By what stands before and behind the number, with letters and marks put together.
 using NumberedGroups = std::map<std::pair<std::string, std::string>, Numbered>;
 
 bool is_picture(const fs::path& file) {
@@ -40,7 +42,9 @@ void note_name(NumberedGroups& groups, const fs::path& file, LeftOut& long_ones,
     if (is_picture(file)) long_ones.add(file);
     return;
   }
-  Numbered& group = groups[{name.substr(0, begin), name.substr(end)}];
+  const std::pair parts{name.substr(0, begin), name.substr(end)};
+  Numbered& group = groups[{put_together(parts.first), put_together(parts.second)}];
+  if (group.files == 0 || parts < group.name) group.name = parts;
   group.digits = std::min(group.digits, end - begin);
   ++group.files;
   group.example = file;
@@ -81,9 +85,9 @@ Result<std::string> sequence_in(const fs::path& folder, LeftOut* others) {
     if (it->is_regular_file(ignored)) note_name(groups, it->path(), long_ones, unnumbered);
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
   std::vector<std::string> found;
-  for (const auto& [name, group] : groups)
+  for (const auto& [parts, group] : groups)
     if (is_picture(group.example))
-      found.push_back(pattern_of(folder, name, std::min<std::size_t>(group.digits, kMostFrameDigits)));
+      found.push_back(pattern_of(folder, group.name, std::min<std::size_t>(group.digits, kMostFrameDigits)));
   if (others) *others = unnumbered;
   if (found.size() == 1) return found.front();
   constexpr std::size_t kMostNamed = 4;
@@ -102,7 +106,8 @@ std::optional<SequenceFrame> sequence_around(const fs::path& file) {
   LeftOut ignored;
   note_name(own, file, ignored, ignored);
   if (own.empty() || !is_picture(file) || !is_there(file)) return std::nullopt;
-  const auto& [name, group] = *own.begin();
+  const Numbered& group = own.begin()->second;
+  const auto& name = group.name;
   const std::string written = file.filename().string().substr(name.first.size(), group.digits);
   const int frame = std::stoi(written);
   // A number that begins with 0 tells how many digits all have; others may come from 9 or from 99. Before zero the sign

@@ -64,6 +64,14 @@ TEST_F(CliHints, PatternsWithOtherDigits) {
             "'s.####.exr'?\n");
 }
 
+TEST_F(CliHints, PatternsInAnotherCase) {
+  make_preset("look.lua");
+  make_exr("SHOT_0001.EXR");
+  const Outcome outcome = run({"run", "look.lua", "shot_###.exr", "-o", "g/"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_EQ(outcome.err, "shot_###.exr: error: no file matches this pattern; did you mean 'SHOT_####.EXR'?\n");
+}
+
 TEST_F(CliHints, FramesThatAreNoNumbers) {
   for (const char* command : {"check", "explain", "graph"}) {
     const Outcome outcome = run({command, "plain_aces", "--frame", "abc"});

@@ -183,6 +183,25 @@ TEST(Pattern, FilesThatAreLeftOutAreNamed) {
               HasSubstr("no numbered pictures: d.20261122001.exr has more than 9 digits"));
 }
 
+/// Files from macOS have letters and marks apart, and lie beside others that were written here.
+TEST(Pattern, LettersAreTheSameHoweverTheyAreWritten) {
+  const TemporaryFolder folder;
+  const std::string apart = "Ku\u0308che.", together = "K\u00fcche.";
+  for (const std::string& name : {apart + "0001.exr", apart + "0002.exr", together + "0003.exr"})
+    std::ofstream(folder / name) << "x";
+  for (const std::string& written : {apart, together}) {
+    const Pattern pattern = parse_pattern((folder / (written + "####.exr")).string()).value();
+    const auto found = find_frames(pattern, std::nullopt).value();
+    ASSERT_EQ(found.size(), 3u) << written;
+    EXPECT_EQ(found[0].file, folder / (apart + "0001.exr"));
+    EXPECT_EQ(found[2].file, folder / (together + "0003.exr"));
+    EXPECT_EQ(find_frames(pattern, std::vector<int>{2}).value()[0].file, folder / (apart + "0002.exr"));
+    EXPECT_EQ(find_frames(pattern, std::vector<int>{3}).value()[0].file, folder / (together + "0003.exr"));
+    EXPECT_EQ(find_frames(pattern, std::vector<int>{9}).value()[0].file, folder / (written + "0009.exr"));
+  }
+  EXPECT_EQ(sequence_in(folder / "").value(), folder / (apart + "####.exr"));
+}
+
 TEST(Pattern, AFrameHasItsSequenceAroundIt) {
   const TemporaryFolder folder;
   for (const char* name :
