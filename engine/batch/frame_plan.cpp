@@ -51,6 +51,20 @@ Overlap overlap_of(const FrameNeed& need, std::uint64_t max_memory, unsigned pro
   }
 }
 
+/// Of a picture that is made smaller, what reading it takes is told apart: a smaller --size changes nothing of that.
+Error FramePlanner::too_large(const FrameNeed& need, Size source, Size made, const std::string& file) const {
+  std::string pixels = fmt::format("{}x{} pixels", made.width, made.height);
+  if (source != made) pixels += fmt::format(" of a picture of {}x{}", source.width, source.height);
+  const std::uint64_t all = need.one_frame();
+  const bool by_reading = need.reading > all / 2;
+  const std::string largest = by_reading ? fmt::format(", {} of them to read it", needed_memory(need.reading)) : "";
+  return {ErrorKind::io,
+          fmt::format("{} need about {} with this preset{}, more than the {}", pixels, needed_memory(all), largest,
+                      allowed_memory(options_.max_memory)),
+          file, 0,
+          by_reading ? "a larger --max-memory, or a smaller file" : "a larger --max-memory, or a smaller --size"};
+}
+
 Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build& build, const FrameJob& job) {
   const BuildContext& context = build.context;
   FrameNeed need;
@@ -66,10 +80,7 @@ Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build
     need.in_flight = others * need.reading + (4 * others + 2) * static_cast<std::uint64_t>(context.size.area()) * 16;
   largest_need_ = std::max(largest_need_, need.one_frame());
   if (need.one_frame() > options_.max_memory)
-    return Error{ErrorKind::io,
-                 fmt::format("{}x{} pixels need about {} with this preset, more than the {}", context.size.width,
-                             context.size.height, needed_memory(need.one_frame()), allowed_memory(options_.max_memory)),
-                 job.input.string()};
+    return too_large(need, header.display_window.size(), context.size, job.input.string());
   return need;
 }
 

@@ -83,6 +83,7 @@ class FramePlanner {
   Size size_of(const PictureHeader& header) const { return shape_of(header).size(); }
 
  private:
+  Error too_large(const FrameNeed& need, Size source, Size made, const std::string& file) const;
   /// Of what the look runs on: `finer` times the windows on each side.
   struct Shape {
     Rect data, display;

@@ -88,11 +88,24 @@ TEST_F(BadInput, NeedAboveMaxMemoryIsRefusedFromTheHeader) {
   EXPECT_TRUE(is_one_error_line(outcome.err));
   EXPECT_THAT(outcome.err, HasSubstr("large.exr"));
   EXPECT_FALSE(fs::exists(path("out.png")));
+  EXPECT_THAT(outcome.err, HasSubstr("large.exr: error: 6000x4000 pixels need about"));
+  EXPECT_THAT(outcome.err, HasSubstr("allowed: a larger --max-memory, or a smaller "));
   // Nothing as large as the picture was ever allocated.
   const std::string report = read("report.json");
   const auto at = report.find("\"peak\": ");
   ASSERT_NE(at, std::string::npos) << report;
   EXPECT_LT(std::stoull(report.substr(at + 8)), 512ull << 20);
+}
+
+TEST_F(BadInput, NeedOfASmallerPictureTellsTheSource) {
+  make_flat("large.exr", 6000, 4000);
+  const Outcome outcome =
+      run({"run", "look.lua", "large.exr", "-o", "out.png", "--max-memory", "256M", "--size", "10%"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("600x400 pixels of a picture of 6000x4000 need about"));
+  EXPECT_THAT(outcome.err, HasSubstr("of them to read it, more than the 256 MiB allowed (--max-memory); allowed: a "
+                                     "larger --max-memory, or a smaller file"));
 }
 
 TEST_F(BadInput, SequenceWithoutFiles) { expect_refusal("shot.####.exr", "no file matches"); }
