@@ -194,7 +194,9 @@ Result<void> run_frames(BatchRun& run) {
   options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;
   if (!options.read.keep_negative) options.read.keep_negative = run.session->preset().keeps_negative();
   AFTERGLOW_CHECK(prepare_lock(run));
-  FrameLoop loop(*run.session, *run.sink, options, run.events);
+  RunEvents events = run.events;
+  if (asked.watch) events.failed = [](const Error&) {};  // the watch tells, when it has tried again
+  FrameLoop loop(*run.session, *run.sink, options, events);
   if (run.first && frames.size() > 1)
     if (auto good = loop.check_region(*run.first); !good) return named(std::move(good).error(), frames.front().job);
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));

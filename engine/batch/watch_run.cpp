@@ -22,6 +22,7 @@ struct Watched {
   std::size_t first = 0;          ///< of the frames that reach its pixels: from there to before this one
   std::optional<Hash> now, made;  ///< its files as they are, and as they were when it was made last
   bool due = true;                ///< it is to be made
+  bool doubted = false;           ///< it failed, and is tried once more before that is told: it may be half written
 };
 
 /// By number within each sequence.
@@ -53,11 +54,18 @@ std::vector<std::size_t> counts(const std::vector<Watched>& frames, const Is& is
   return out;
 }
 
+bool grows(const Watched& one, WholeFiles& watch) {
+  return std::ranges::any_of(one.record->job.sources(), [&](const auto& file) { return watch.may_grow(file); });
+}
+
 /// Looks at all files once more; what has changed since it was made is due again, with what it reaches.
 void look_again(std::vector<Watched>& frames, WholeFiles& watch) {
   for (Watched& one : frames) {
     one.now = stamp_of(one.record->job.sources(), [&](const auto& file) { return watch.whole(file); });
     if (!one.made && !one.due) one.made = one.now;  // up to date when the run began
+  }
+  for (Watched& one : frames) {
+    if (one.doubted && one.now && one.made && *one.now == *one.made && !grows(one, watch)) one.due = true;
   }
   const auto changed = counts(frames, [](const Watched& one) { return one.made && one.now && *one.now != *one.made; });
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -71,6 +79,34 @@ std::vector<Watched*> can_be_made(std::vector<Watched>& frames) {
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (frames[i].due && missing[i + 1] == missing[frames[i].first]) out.push_back(&frames[i]);
   return out;
+}
+
+/// Tells of what failed, but of what may have failed for being half written when that has been tried again.
+void tell_failures(const std::vector<Watched*>& batch, WholeFiles& watch, const RunEvents& events) {
+  for (Watched* one : batch) {
+    const auto& error = one->record->error;
+    one->doubted = error && error->kind == ErrorKind::io && grows(*one, watch);
+    if (one->doubted) {
+      events.note(error->text() + " (it was written a moment ago: tried again)");
+    } else if (error) {
+      events.failed(*error);
+    }
+  }
+}
+
+/// The first frame that found no room, and those before it that failed for other reasons.
+void tell_until_full(const std::vector<Watched*>& batch, const RunEvents& events) {
+  for (const Watched* one : batch) {
+    if (!one->record->error) continue;
+    events.failed(*one->record->error);
+    if (is_disk_full(*one->record->error)) return;
+  }
+}
+
+/// What is left when nothing is tried again.
+void tell_doubted(std::vector<Watched>& frames, const RunEvents& events) {
+  for (Watched& one : frames)
+    if (std::exchange(one.doubted, false) && one.record->error) events.failed(*one.record->error);
 }
 
 }  // namespace
@@ -87,6 +123,7 @@ Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, con
     for (Watched* one : batch) {
       one->record->state = State::waiting;
       one->record->error.reset();
+      one->doubted = false;
     }
     const Result<void> done = batch.empty() ? Result<void>() : run();
     for (std::size_t i = 0, made = 0; i < watched.size(); ++i) {
@@ -98,18 +135,23 @@ Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, con
     }
     const bool full = std::ranges::any_of(
         batch, [](const Watched* one) { return one->record->error && is_disk_full(*one->record->error); });
-    if (!done && (fail_fast || full || done.error().kind != ErrorKind::io)) return done;
+    if (!done && (fail_fast || full || done.error().kind != ErrorKind::io)) {
+      tell_doubted(watched, events);
+      if (full && batch.size() > 1) tell_until_full(batch, events);
+      return done;
+    }
     for (Watched* one : batch) {
       one->due = false;
       one->made = one->now;
     }
-    if (batch.size() == 1 && !done) events.failed(done.error());  // of several the run tells each
+    tell_failures(batch, watch, events);
     const auto is_done = [](const Watched& one) {
       const bool being_written = !one.now && is_file(one.record->job.input);
       return !one.due && !being_written && (one.record->state == State::done || one.record->state == State::up_to_date);
     };
     if (batch.empty() && std::ranges::all_of(watched, is_done)) return {};
     if (events.interrupted()) {
+      tell_doubted(watched, events);
       const auto count = std::ranges::count_if(watched, is_done);
       return Error{ErrorKind::interrupted, fmt::format("interrupted after {} of {} frames; --resume goes on from there",
                                                        count, watched.size())};

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <system_error>
 
 #include "core/file.h"
 #include "core/file_record.h"
@@ -61,6 +63,7 @@ void WholeFiles::take_events() {
         const bool closed = (event->mask & kWhole) != 0;
         file.open = !closed && ((event->mask & IN_MODIFY) != 0 || is_begun(path));
         if (closed) file.closed = stamp_now(path);
+        if ((event->mask & IN_MOVED_TO) != 0) file.moved = file.closed;
       }
     }
 }
@@ -78,6 +81,15 @@ std::optional<Hash> WholeFiles::whole(const std::filesystem::path& path) {
   File& file = files_[path];
   if (!is_file(path) || !is_whole(path, file)) return std::nullopt;
   return file.stamp;
+}
+
+bool WholeFiles::may_grow(const std::filesystem::path& path) {
+  constexpr std::chrono::seconds kPause{10};
+  std::error_code ec;
+  const auto written = std::filesystem::last_write_time(path, ec);
+  const auto age = std::filesystem::file_time_type::clock::now() - written;
+  const File& file = files_[path];
+  return !ec && age < kPause && age > -kPause && (file.moved == Hash() || file.moved != stamp_now(path));
 }
 
 }  // namespace afterglow

@@ -25,10 +25,13 @@ class WholeFiles {
   bool wait();
   /// Size, times and number of a file as they are now; nothing while it is not whole, or not there.
   std::optional<Hash> whole(const std::filesystem::path& file);
+  /// Whether there may be more of it to come although it looked whole: it was not moved to its name, and was written in
+  /// the last ten seconds. Writers pause, and close files that they go on with.
+  bool may_grow(const std::filesystem::path& file);
 
  private:
   struct File {
-    Hash stamp, closed;  ///< of the last look, and of the time when it was closed
+    Hash stamp, closed, moved;  ///< of the last look, and of the times when it was closed and came to its name
     Clock::time_point since;
     bool open = false;  ///< somebody on this machine writes it
   };

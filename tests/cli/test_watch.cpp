@@ -3,6 +3,7 @@
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli_test.h"
 
@@ -119,12 +120,47 @@ TEST_F(Watch, ABadFrameIsToldAndWaitedFor) {
 TEST_F(Watch, AFrameThatFailedIsNoneOfThoseThatCameLater) {
   make_truncated_exr("bad.exr");
   give(1, "bad.exr");
+  fs::last_write_time(path("in/" + name(1)), fs::file_time_type::clock::now() - std::chrono::hours(1));
   give(2);
   const Outcome outcome = watch("1-3", Steps({{there(2), [&] { give(3); }}, {there(3), [&] { give(1); }}}));
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("in/shot.0001.exr: error: "));
   EXPECT_THAT(outcome.err, Not(HasSubstr("frames failed"))) << "each is told by its name";
   expect_as_one_run("1-3", 3);
+}
+
+/// Its writer has closed it and goes on with it: no error is told of what was half there.
+TEST_F(Watch, AFileThatIsWrittenInTwoGoesIsNoError) {
+  const std::string whole = read(made(1)), half = whole.substr(0, whole.size() / 2);
+  const auto put = [&](const std::string& bytes) {
+    std::ofstream(path("in/" + name(1)), std::ios::binary | std::ios::app) << bytes;
+  };
+  const Outcome outcome = watch("1-3", Steps({{at_once, [&] { put(half); }},
+                                              {at_once, [&] { give(2); }},
+                                              {there(2), [&] { give(3); }},
+                                              {there(3), [&] { put(whole.substr(half.size())); }}}));
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  expect_as_one_run("1-3", 3);
+}
+
+TEST_F(Watch, AFileThatStaysHalfWrittenIsToldAtTheEnd) {
+  const std::string whole = read(made(1));
+  bool written = false;
+  RunOptions options;
+  options.meanwhile = [&](int process) {
+    if (!std::exchange(written, true)) {
+      std::ofstream(path("in/" + name(1)), std::ios::binary) << whole.substr(0, whole.size() / 2);
+      give(2);
+    }
+    if (there(2)() && !fs::exists(path("in/" + name(3)))) give(3);
+    return there(3)() && kill(process, SIGINT) == 0;
+  };
+  options.limit = std::chrono::seconds(60);
+  const Outcome outcome =
+      run({"run", "look.lua", "in/shot.####.exr", "-o", "out/", "--watch", "--frames", "1-3"}, options);
+  EXPECT_EQ(outcome.exit_code, kInterrupted) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("in/shot.0001.exr: error: "));
 }
 
 TEST_F(Watch, FramesThatLookBackWaitForThoseBefore) {
