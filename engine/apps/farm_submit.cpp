@@ -65,13 +65,15 @@ Result<void> check_streams(const FrameListRequest& files) {
 
 Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, const std::vector<FrameJob>& frames,
                   const farm::LoadedLook& look, farm::Job& job, Console& console) {
+  const bool of_pictures = !frames.empty() && !frames.front().movie;
   AFTERGLOW_CHECK(farm::pack_look(look, job));
   const fs::path shipped = find_installation() / "calibration" / "devices.json";
   const std::string& given = arguments.run.execution.calibration;
   if (!given.empty() || is_file(shipped))
     AFTERGLOW_CHECK(farm::pack_file(given.empty() ? shipped : fs::path(given), "look/calibration.json", job));
   job.run = arguments.packed_words(request.preset, job.folder);
-  if (!arguments.run.fps && !job.video.empty())  // the same for every chunk, whose first picture is another
+  // The same for every chunk, whose first picture is another; frames of a video have their own times.
+  if (!arguments.run.fps && !job.video.empty() && of_pictures)
     job.run.insert(job.run.begin(), fmt::format("--fps={}", request.loop.fps));
   job.environment = look.environment;
   job.environment["AFTERGLOW_PATH"] = "";

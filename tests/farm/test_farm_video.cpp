@@ -94,6 +94,15 @@ class FarmVideo : public FarmTest {
   }
 };
 
+TEST_F(FarmVideo, NobodyIsWarnedOfARateThatNobodyGave) {
+  make_clip("clip.mp4", 10, "-r 25");
+  make_look_back();
+  const auto jobs = write_jobs({"look.lua", "clip.mp4", "-o", "out/shot.mkv", "--codec", "ffv1", "--chunk", "5"});
+  const Outcome made = run_line(jobs["chunks"][0]);
+  EXPECT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_THAT(made.err, Not(HasSubstr("--fps")));
+}
+
 TEST_F(FarmVideo, ChunksOfAClipMakeTheFramesOfOneRun) {
   make_clip("clip.mp4", 26);
   make_look_back();
