@@ -89,20 +89,32 @@ Result<std::vector<Entry>> list_entries(unzFile zip, const fs::path& path, const
   return entries;
 }
 
-/// A folder that was zipped whole is a pack as its content is: the folder's own name goes, when all lies in it and it
-/// looks like a pack. `stem`: the zip's name without ".zip".
+/// A folder that was zipped whole is a pack as its content is: the folder's own name goes, when it looks like a pack
+/// and all lies in it but files beside it that are no scripts (a readme), which are left out. `stem`: the zip's name
+/// without
+/// ".zip"; a folder of that name is no library.
 void drop_folder_around(std::vector<Entry>& entries, const std::string& stem) {
   static constexpr std::array<std::string_view, 4> kParts{"presets", "effects", "masks", "shaders"};
+  static constexpr std::array<std::string_view, 3> kLibraries{"lib", "luts", "scripts"};
   const auto is_part = [&](const std::string& folder) { return std::ranges::find(kParts, folder) != kParts.end(); };
-  const std::string around = entries.front().name.substr(0, entries.front().name.find('/') + 1);
-  const auto lies_in_it = [&](const Entry& entry) { return entry.name.starts_with(around); };
-  if (around.empty() || is_part(around.substr(0, around.size() - 1)) || !std::ranges::all_of(entries, lies_in_it))
-    return;
+  const auto is_beside = [](const Entry& entry) {
+    return entry.name.find('/') == std::string::npos && !entry.name.ends_with(".lua");
+  };
+  const auto inner = std::ranges::find_if_not(entries, is_beside);
+  if (inner == entries.end()) return;
+  const std::string around = inner->name.substr(0, inner->name.find('/') + 1);
+  const std::string name = around.substr(0, around.empty() ? 0 : around.size() - 1);
+  const auto lies_in_it = [&](const Entry& entry) { return entry.name.starts_with(around) || is_beside(entry); };
+  if (around.empty() || is_part(name) || !std::ranges::all_of(entries, lies_in_it)) return;
+  const bool may_hold_looks = name == stem || std::ranges::find(kLibraries, name) == kLibraries.end();
   const bool is_pack = std::ranges::any_of(entries, [&](const Entry& entry) {
+    if (is_beside(entry)) return false;
     const fs::path inside(entry.name.substr(around.size()));
-    return is_part(inside.begin()->string()) || (around == stem + "/" && inside.extension() == ".lua");
+    return is_part(inside.begin()->string()) ||
+           (may_hold_looks && !inside.has_parent_path() && inside.extension() == ".lua");
   });
   if (!is_pack) return;
+  std::erase_if(entries, is_beside);
   for (auto& entry : entries) entry.name.erase(0, around.size());
 }
 

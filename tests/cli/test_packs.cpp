@@ -212,5 +212,22 @@ TEST_F(Packs, ATableOfAPackIsOneOfItsFiles) {
   EXPECT_NE(made(), first);
 }
 
+/// A folder that was zipped whole, the zip renamed since, and what people and systems put beside it.
+TEST_F(Packs, AZippedFolderUnderAnotherName) {
+  const std::string expected = picture({"kit"});
+  fs::create_directories(path("top/my look"));
+  fs::copy(path("kit"), path("top/my look"), fs::copy_options::recursive);
+  fs::rename(path("top/my look/presets/warm.lua"), path("top/my look/warm.lua"));
+  zip("mylook (1).zip", "top");
+  EXPECT_EQ(picture({"mylook (1).zip"}), expected);
+  write("top/readme.txt", "Made with love.");
+  write("top/__MACOSX/my look/._warm.lua", "x");
+  zip("final.zip", "top");
+  EXPECT_EQ(picture({"final.zip"}), expected);
+  write("bare/mylook/plain.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.exposure {} }\n");
+  zip("renamed.zip", "bare");
+  EXPECT_EQ(run_here({"check", "renamed.zip"}).exit_code, kDone) << run_here({"check", "renamed.zip"}).err;
+}
+
 }  // namespace
 }  // namespace afterglow::test
