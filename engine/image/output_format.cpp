@@ -165,6 +165,10 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
     AFTERGLOW_CHECK(check_linear_space(*found, options, file));
   if (options.keep_layers && found->kind != OutputKind::exr)
     return Error{ErrorKind::usage, "only EXR files can keep layers", file.string(), 0, ".exr"};
+  if (options.png_level && found->kind != OutputKind::png)
+    return Error{ErrorKind::usage, "--png-level is for PNG files", file.string(), 0, ".png"};
+  if (options.jpeg_quality && found->kind != OutputKind::jpeg)
+    return Error{ErrorKind::usage, "--jpeg-quality is for JPEG files", file.string(), 0, ".jpg"};
   if (options.compression.empty()) return found;
   AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   if (found->compressions.empty())
