@@ -14,6 +14,7 @@
 #include "core/ascii.h"
 #include "core/parse_number.h"
 #include "core/text.h"
+#include "core/utf16.h"
 #include "image/lut_file.h"
 
 namespace afterglow {
@@ -62,6 +63,7 @@ bool is_profile(std::string_view text) {
 
 Result<void> check_table(const std::string& text, const std::filesystem::path& path, TableUse use) {
   const std::string file = path.string();
+  if (is_utf16(text)) return Error{ErrorKind::script, kUtf16, file};
   if (lower(path.extension().string()) == ".cube") AFTERGLOW_CHECK(check_cube(text, file));
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file}; };
   // Expat, which OpenColorIO reads XML with, knows UTF-16, and puts in what a document type says: neither is searched

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/inside.h"
 #include "core/text.h"
+#include "core/utf16.h"
 #include "core/version.h"
 #include "script/globals.h"
 #include "script/injection.h"
@@ -279,8 +280,7 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
   }
   std::string_view text = box.sources()[static_cast<std::size_t>(index)].text;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    throw ScriptError{{ErrorKind::script, "is UTF-16; save it as UTF-8", file.string()}};
+  if (is_utf16(text)) throw ScriptError{{ErrorKind::script, kUtf16, file.string()}};
   if (text.starts_with('\x1B'))
     throw ScriptError{{ErrorKind::script, "is precompiled Lua; only text is allowed", file.string()}};
   const std::string chunk = fmt::format("=@{}", index);

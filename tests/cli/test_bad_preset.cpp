@@ -37,6 +37,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(BadPreset{"syntax", "return fx.stack {\n", {"look.lua:", "error: "}},
                       BadPreset{"run_time", std::string(kUse) + "local x = nil\nreturn x.y\n", {"look.lua:3: error: "}},
                       BadPreset{"utf16", {"\xFF\xFEr\0e\0", 6}, {"look.lua: error: is UTF-16; save it as UTF-8"}},
+                      BadPreset{"utf16_bare", {"r\0e\0t\0u\0r\0n\0", 12}, {"look.lua: error: is UTF-16"}},
                       BadPreset{"utf16_big", {"\xFE\xFF\0r", 4}, {"is UTF-16"}},
                       BadPreset{"no_stack", "return 1\n", {"look.lua", "error: "}},
                       BadPreset{"unknown_effect",

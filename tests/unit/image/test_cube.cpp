@@ -69,6 +69,14 @@ TEST(Cube, Words) {
   EXPECT_THAT(fault_of("\xEF\xBB\xBFLUT_1D_SIZE 2\n"), HasSubstr("byte order mark"));
 }
 
+TEST(Cube, InUtf16) {
+  const std::string text = "LUT_3D_SIZE 2\n";
+  std::string wide;
+  for (const char c : text) wide += std::string({c, '\0'});
+  for (const char* const mark : {"", "\xff\xfe"})
+    EXPECT_EQ(check_table(mark + wide, "a.cube", TableUse::of_look).error().message, "is UTF-16; save it as UTF-8");
+}
+
 TEST(Cube, NothingCrashes) {
   std::mt19937 random(17);
   const std::string good = "TITLE \"t\"\nLUT_1D_SIZE 2\nLUT_3D_SIZE 2\nDOMAIN_MIN 0 0 0\n" + rows(10);
