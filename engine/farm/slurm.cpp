@@ -37,15 +37,20 @@ std::string last_words(const ProcessEnd& end) {
 /// Runs a program of Slurm's that is to succeed; what it prints.
 Result<std::string> output_of(const std::vector<std::string>& words) {
   auto ended = run_process(words);
+  constexpr const char* kWhere =
+      "a machine that can submit to Slurm (Debian: slurm-client), or --jobs FILE.json for other schedulers";
   if (!ended) {
     Error error = std::move(ended).error();
-    error.allowed =
-        "a machine that can submit to Slurm (Debian: slurm-client), or --jobs FILE.json for other schedulers";
+    error.allowed = kWhere;
     return error;
   }
-  if (ended->code != 0)
-    return Error{ErrorKind::io,
-                 fmt::format("{} ended with code {}: {}", words.front(), ended->code, last_words(*ended))};
+  if (ended->code != 0) {
+    Error error{ErrorKind::io,
+                fmt::format("{} ended with code {}: {}", words.front(), ended->code, last_words(*ended))};
+    // Its programs are there, and know of no cluster.
+    if (error.message.find("configuration source") != std::string::npos) error.allowed = kWhere;
+    return error;
+  }
   return ended->out;
 }
 

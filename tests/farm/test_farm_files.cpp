@@ -150,6 +150,18 @@ TEST_F(FarmFiles, WithoutSlurmNothingIsLeft) {
   EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
 }
 
+TEST_F(FarmFiles, SlurmWithoutAConfigurationTellsOfOtherWays) {
+  write("bin/scontrol", "#!/bin/sh\necho 'scontrol: fatal: Could not establish a configuration source' >&2\nexit 1\n");
+  fs::permissions(path("bin/scontrol"), fs::perms::owner_all);
+  RunOptions options;
+  options.environment["PATH"] = text("bin") + ":/usr/bin:/bin";
+  const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/", "--wait"}, options);
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(is_one_error_line(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("scontrol ended with code 1"));
+  EXPECT_THAT(outcome.err, HasSubstr("or --jobs FILE.json for other schedulers"));
+}
+
 TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   const auto refused = [&](const std::vector<std::string>& words, int exit_code, const std::string& part) {
     const Outcome outcome = farm(words);
