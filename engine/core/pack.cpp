@@ -91,8 +91,7 @@ Result<std::vector<Entry>> list_entries(unzFile zip, const fs::path& path, const
 
 /// A folder that was zipped whole is a pack as its content is: the folder's own name goes, when it looks like a pack
 /// and all lies in it but files beside it that are no scripts (a readme), which are left out. `stem`: the zip's name
-/// without
-/// ".zip"; a folder of that name is no library.
+/// without ".zip"; a folder of that name is no library.
 void drop_folder_around(std::vector<Entry>& entries, const std::string& stem) {
   static constexpr std::array<std::string_view, 4> kParts{"presets", "effects", "masks", "shaders"};
   static constexpr std::array<std::string_view, 3> kLibraries{"lib", "luts", "scripts"};

@@ -9,6 +9,7 @@ namespace afterglow::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 using namespace std::string_literals;
 
