@@ -2,7 +2,6 @@
 #include "core/inside.h"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <system_error>
 
@@ -29,8 +28,9 @@ std::vector<fs::path> own_first(std::vector<fs::path> folders, const fs::path& f
     const fs::path normal = folder.lexically_normal();
     return std::distance(normal.begin(), normal.end());
   };
-  const auto others = std::ranges::stable_partition(folders, [&](const auto& at) { return is_named_in(file, at); });
-  std::ranges::stable_sort(folders.begin(), others.begin(), std::greater(), depth);
+  const auto others = std::stable_partition(folders.begin(), folders.end(),
+                                            [&](const fs::path& folder) { return is_named_in(file, folder); });
+  std::stable_sort(folders.begin(), others, [&](const fs::path& a, const fs::path& b) { return depth(a) > depth(b); });
   return folders;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "image/ffmpeg_clock.h"
@@ -13,6 +14,12 @@
 
 namespace afterglow {
 namespace {
+
+/// JPEGs one behind the other: FFmpeg makes a picture of one that is cut off, too.
+bool is_cut_jpeg(const AVFormatContext& container, const AVPacket& packet) {
+  const std::string_view bytes(reinterpret_cast<const char*>(packet.data), static_cast<std::size_t>(packet.size));
+  return std::string_view(container.iformat->name) == "mjpeg" && bytes.rfind("\xff\xd9") == std::string_view::npos;
+}
 
 /// One decoded frame.
 class StreamFrame : public MovieSource {
@@ -80,6 +87,7 @@ class FfmpegStream : public MovieFrames {
     }
     if (auto reason = input_->given_up()) return *std::move(reason);
     if (read < 0) return broken(kCut);
+    if (is_cut_jpeg(input_->container(), *packet_)) return broken(kCut);
     if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return broken(ends_part() ? kAnew : kCut);
     const int sent = avcodec_send_packet(codec_.get(), packet_.get());
     av_packet_unref(packet_.get());

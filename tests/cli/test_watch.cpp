@@ -105,12 +105,14 @@ TEST_F(Watch, AFrameThatChangesIsMadeAgain) {
 
 TEST_F(Watch, ABadFrameIsToldAndWaitedFor) {
   make_truncated_exr("bad.exr");
+  fs::last_write_time(path("bad.exr"), fs::file_time_type::clock::now() - std::chrono::hours(1));  // nobody writes it
   bool bad_was_seen = false;
-  const Outcome outcome = watch(
-      "1-2", Steps({{at_once, [&] { give(1, "bad.exr"); }}, {at_once, [&] { give(2); }}, {there(2), [&] {
-                                                                                            bad_was_seen = !there(1)();
-                                                                                            give(1);
-                                                                                          }}}));
+  const auto give_bad = [&] { fs::rename(path("bad.exr"), path("in/" + name(1))); };
+  const auto mend = [&] {
+    bad_was_seen = !there(1)();
+    give(1);
+  };
+  const Outcome outcome = watch("1-2", Steps({{at_once, give_bad}, {at_once, [&] { give(2); }}, {there(2), mend}}));
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_TRUE(bad_was_seen);
   EXPECT_THAT(outcome.err, HasSubstr("in/shot.0001.exr: error: "));
