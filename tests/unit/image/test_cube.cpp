@@ -178,7 +178,7 @@ TEST(Lut, WhatLeadsElsewhereIsRefusedInEveryFormat) {
                                   "&x;" + end),
                 HasSubstr("has a document type"))
         << name;
-    EXPECT_THAT(of_file(name, utf16(head + list + "<Reference" + path + end)), HasSubstr("is no text")) << name;
+    EXPECT_THAT(of_file(name, utf16(head + list + "<Reference" + path + end)), HasSubstr("is UTF-16; save it as UTF-8")) << name;
     EXPECT_THAT(of_file(name, "title\nlut_3d_size \t 2204\n"), HasSubstr("LUT_3D_SIZE is 2204")) << name;
     EXPECT_THAT(of_file(name, "LUT_1D_SIZE 2\nLUT_1D_SIZE 00100000\n"), HasSubstr("LUT_1D_SIZE is 100000")) << name;
     EXPECT_THAT(of_file(name, "LUT_3D_SIZE 999999999999999999999999\n"), HasSubstr("LUT_3D_SIZE is 9999")) << name;

@@ -9,7 +9,6 @@ namespace afterglow::test {
 namespace {
 
 using testing::HasSubstr;
-using testing::StartsWith;
 
 using namespace std::string_literals;
 
@@ -44,10 +43,11 @@ const std::string kAt4 = "effects/probe.lua:4: error: pass 'glow.gain' of effect
 const std::string kRest = "high = source, tint = { 1, 1, 1 }, steps = 1, on = true";
 
 TEST_F(BuildMessages, UnknownNames) {
-  const std::string gian = gain("high = source, gian = 1");
-  EXPECT_THAT(gian, StartsWith(kAt5 + "shader 'gain' has no input or parameter 'gian' (/")) << "and its file";
-  EXPECT_THAT(gian, HasSubstr("/shaders/gain.glsl); allowed: source, high, gain, tint, steps, on, taps, channels, "
-                              "compute, name, precise, reach, shader, size; did you mean 'gain'?"));
+  EXPECT_EQ(gain("high = source, gian = 1"),
+            kAt5 +
+                "shader 'gain' has no input or parameter 'gian' (shaders/gain.glsl); allowed: source, "
+                "high, gain, tint, steps, on, taps, channels, compute, name, precise, reach, shader, size; "
+                "did you mean 'gain'?");
   EXPECT_THAT(gain("high = source, chanels = 1"), HasSubstr("did you mean 'channels'?"));
   EXPECT_EQ(error("return g:pass { shader = \"plane\", source = source }").substr(0, 75),
             "effects/probe.lua:4: error: pass 'glow.plane' of effect 'probe': unknown shader 'plane'"s.substr(0, 75));
