@@ -179,21 +179,17 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     runtime.depends.files.emplace(name, "");
     return name;
   }
-  const auto own = runtime.path.folders_of(script_of(lua, name));
-  const auto depend = [&](const fs::path& file) {
-    // Along the path another one of that name may be found: then it is the file itself that counts.
-    const bool is_first = own.empty() || runtime.path.find_asset(name) == file;
-    runtime.depends.files.emplace(file, is_first ? name : "");
-    return file;
-  };
-  const auto key = std::pair(name, own.empty() ? fs::path() : own.front());
-  if (const auto known = runtime.assets.found.find(key); known != runtime.assets.found.end())
-    return depend(known->second);
+  const auto key = std::pair(name, script_of(lua, name));
+  if (const auto known = runtime.assets.found.find(key); known != runtime.assets.found.end()) {
+    runtime.depends.files.insert(known->second);
+    return known->second.first;
+  }
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
   if (!is_safe_entry(name, 8))
     fail_at(lua, what, {"file", name, "leads out of the folders that scripts may read", kAllowed, {}});
   auto roots = runtime.path.asset_folders();
+  const auto own = runtime.path.folders_of(key.second);
   if (!own.empty()) roots = own_first(std::move(roots), own.front() / name);
   for (const auto& root : roots) {
     const fs::path file = root / name;
@@ -201,7 +197,11 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     const bool of_user = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
     if (of_user && !lies_in(file, root))
       fail_at(lua, what, {"file", name, fmt::format("is a link that leads out of {}", root.string()), kAllowed, {}});
-    return depend(runtime.assets.found[key] = file);
+    // Along the path another one of that name may be found: then it is the file itself that counts.
+    const bool is_first = own.empty() || runtime.path.find_asset(name) == file;
+    runtime.assets.found[key] = {file, is_first ? name : ""};
+    runtime.depends.files.emplace(file, is_first ? name : "");
+    return file;
   }
   fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
 }

@@ -49,9 +49,9 @@ struct ReadPicture {
 /// What one state has read: a file is read once, so that every build of a preset sees the same. Pictures that no graph
 /// holds any more may go when others need the room.
 struct Assets {
-  /// By name and the folder that goes before others: a file that is gone later is the one that was found as long as
-  /// the state lives.
-  std::map<std::pair<std::string, std::filesystem::path>, std::filesystem::path> found;
+  /// By name and the script that gives it, with what Dependencies::files says of it: a file that is gone later is the
+  /// one that was found as long as the state lives.
+  std::map<std::pair<std::string, std::string>, std::pair<std::filesystem::path, std::string>> found;
   /// By file and correction.
   std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const LoadedLut>> luts;
   std::map<std::string, std::shared_ptr<const LoadedOcio>> ocio;           ///< by request

@@ -75,13 +75,12 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
 }  // namespace
 
 std::string ShaderLibrary::own_name(const std::string& name, const fs::path& script) {
-  const auto folders = path_.folders_of(script);
-  if (folders.empty() || !is_safe_name(name) || (path_.made && path_.made->find(name))) return name;
+  if (!is_safe_name(name) || (path_.made && path_.made->find(name))) return name;
   const std::lock_guard lock(mutex_);
-  std::string& known = own_names_[{name, folders.front()}];
+  std::string& known = own_names_[{name, script}];
   if (!known.empty()) return known;
   known = name;
-  for (const fs::path& folder : folders) {
+  for (const fs::path& folder : path_.folders_of(script)) {
     const fs::path own = folder / "shaders" / (name + ".glsl");
     if (!is_file(own, path_.record.get())) continue;
     if (path_.find_shader(name + ".glsl").front() == own) break;

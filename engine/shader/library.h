@@ -79,7 +79,7 @@ class ShaderLibrary {
   SearchPath path_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<const ShaderSource>> sources_;
-  std::map<std::pair<std::string, std::filesystem::path>, std::string> own_names_;  ///< by name and folder
+  std::map<std::pair<std::string, std::filesystem::path>, std::string> own_names_;  ///< by name and script
   std::map<std::string, std::filesystem::path> own_files_;  ///< by what own_name gave; scripts name no others
 };
 

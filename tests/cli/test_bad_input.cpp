@@ -28,6 +28,17 @@ class BadInput : public CliTest {
     EXPECT_EQ(files(), before) << "something was left behind";
   }
 
+  /// A run that needs more than --max-memory for a picture of 24 million pixels, and is refused.
+  Outcome refuse_large(const std::vector<std::string>& more) const {
+    make_flat("large.exr", 6000, 4000);
+    std::vector<std::string> arguments{"run", "look.lua", "large.exr", "-o", "out.png", "--max-memory", "256M"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kFiles);
+    EXPECT_TRUE(is_one_error_line(outcome.err));
+    return outcome;
+  }
+
   /// A picture of zeros that compresses to next to nothing.
   void make_flat(const std::string& name, int width, int height, int channels = 3) const {
     OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::HALF);
@@ -79,13 +90,9 @@ TEST_F(BadInput, SideOf16384IsFine) {
 }
 
 TEST_F(BadInput, NeedAboveMaxMemoryIsRefusedFromTheHeader) {
-  make_flat("large.exr", 6000, 4000);
   // The limit is what the picture needs, not what is left of it after reading: 24 million pixels of 16 bytes are 366
   // MiB alone.
-  const Outcome outcome =
-      run({"run", "look.lua", "large.exr", "-o", "out.png", "--max-memory", "256M", "--report", "report.json"});
-  EXPECT_EQ(outcome.exit_code, kFiles);
-  EXPECT_TRUE(is_one_error_line(outcome.err));
+  const Outcome outcome = refuse_large({"--report", "report.json"});
   EXPECT_THAT(outcome.err, HasSubstr("large.exr"));
   EXPECT_FALSE(fs::exists(path("out.png")));
   EXPECT_THAT(outcome.err, HasSubstr("large.exr: error: 6000x4000 pixels need about"));
@@ -98,11 +105,7 @@ TEST_F(BadInput, NeedAboveMaxMemoryIsRefusedFromTheHeader) {
 }
 
 TEST_F(BadInput, NeedOfASmallerPictureTellsTheSource) {
-  make_flat("large.exr", 6000, 4000);
-  const Outcome outcome =
-      run({"run", "look.lua", "large.exr", "-o", "out.png", "--max-memory", "256M", "--size", "10%"});
-  EXPECT_EQ(outcome.exit_code, kFiles);
-  EXPECT_TRUE(is_one_error_line(outcome.err));
+  const Outcome outcome = refuse_large({"--size", "10%"});
   EXPECT_THAT(outcome.err, HasSubstr("600x400 pixels of a picture of 6000x4000 need about"));
   EXPECT_THAT(outcome.err, HasSubstr("of them to read it, more than the 256 MiB allowed (--max-memory); allowed: a "
                                      "larger --max-memory, or a smaller file"));
