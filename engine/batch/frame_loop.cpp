@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "batch/crop.h"
+#include "core/beside.h"
 #include "core/file.h"
 #include "core/file_time.h"
 #include "core/release_memory.h"
@@ -283,20 +284,18 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->options.halves = halves_suffice(*reading);
   const bool reuse = options_.reuse && several() && runs(*reading);
   ShotSketch* const sketch = looks_for_cuts(frame.job) ? &reading->sketch : nullptr;
-  reading->picture = std::async(std::launch::async,
-                                [this, &frame, reuse, sketch, options = reading->options, scaling = reading->scaling,
-                                 header = std::move(planned->header)]() -> Result<Picture> {
-                                  const auto start = Clock::now();
-                                  const double files = FileTime::of_thread();
-                                  auto picture = read_picture(header, options, events_.diagnostics);
-                                  if (picture && scaling) scale_picture(*picture, *scaling);
-                                  if (picture && reuse) note_content(*picture);
-                                  if (picture && sketch) *sketch = sketch_of(*picture);
-                                  frame.steps.read = milliseconds_since(start);
-                                  frame.steps.decode =
-                                      std::max(0.0, frame.steps.read - (FileTime::of_thread() - files));
-                                  return picture;
-                                });
+  reading->picture = beside([this, &frame, reuse, sketch, options = reading->options, scaling = reading->scaling,
+                             header = std::move(planned->header)]() -> Result<Picture> {
+    const auto start = Clock::now();
+    const double files = FileTime::of_thread();
+    auto picture = read_picture(header, options, events_.diagnostics);
+    if (picture && scaling) scale_picture(*picture, *scaling);
+    if (picture && reuse) note_content(*picture);
+    if (picture && sketch) *sketch = sketch_of(*picture);
+    frame.steps.read = milliseconds_since(start);
+    frame.steps.decode = std::max(0.0, frame.steps.read - (FileTime::of_thread() - files));
+    return picture;
+  });
   return reading;
 }
 

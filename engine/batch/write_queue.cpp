@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/beside.h"
 #include "core/file_time.h"
 #include "core/stopwatch.h"
 
@@ -31,7 +32,7 @@ void WriteQueue::add(FrameRecord& frame, std::size_t index, Picture picture) {
     memory_.give(std::move(picture));
     return written;
   };
-  writing_.push_back({&frame, std::async(std::launch::async, std::move(write)).share()});
+  writing_.push_back({&frame, beside(std::move(write)).share()});
 }
 
 std::optional<WriteQueue::Written> WriteQueue::take() {

@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -114,6 +115,27 @@ Result<std::size_t> PatientReader::read_when_ready(void* to, std::size_t size) {
   }
 }
 
+/// False: there are no more threads to be had.
+bool PatientReader::start_worker() {
+  auto worker = std::make_shared<Worker>(from_);
+  try {
+    std::thread([worker] { worker->run(); }).detach();
+  } catch (const std::system_error&) {
+    return false;
+  }
+  worker_ = std::move(worker);
+  return true;
+}
+
+/// As long as the system takes.
+Result<std::size_t> PatientReader::read_now(void* to, std::size_t size) {
+  while (true) {
+    const ssize_t got = ::read(descriptor(), to, size);
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) return unreadable(errno);
+  }
+}
+
 Result<std::size_t> PatientReader::read_file(void* to, std::size_t size) {
   while (asks_memory_) {
     const iovec part{to, size};
@@ -128,10 +150,7 @@ Result<std::size_t> PatientReader::read_file(void* to, std::size_t size) {
 }
 
 Result<std::size_t> PatientReader::read_by_worker(void* to, std::size_t size) {
-  if (!worker_) {
-    worker_ = std::make_shared<Worker>(from_);
-    std::thread([worker = worker_] { worker->run(); }).detach();
-  }
+  if (!worker_ && !start_worker()) return read_now(to, size);
   Worker& worker = *worker_;
   std::unique_lock lock(worker.mutex);
   for (const Wait wait(*this);;) {

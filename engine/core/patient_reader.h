@@ -34,6 +34,8 @@ class PatientReader {
   Result<std::size_t> read_when_ready(void* to, std::size_t size);
   Result<std::size_t> read_file(void* to, std::size_t size);
   Result<std::size_t> read_by_worker(void* to, std::size_t size);
+  bool start_worker();
+  Result<std::size_t> read_now(void* to, std::size_t size);
 
   std::shared_ptr<FileDescriptor> from_;
   Patience patience_;

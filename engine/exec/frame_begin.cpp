@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // How frames begin: their images are made, filled, and what runs is submitted.
 #include <algorithm>
-#include <exception>
 #include <utility>
 
+#include "core/beside.h"
 #include "core/exception.h"
 #include "exec/frame_runner_state.h"
 
@@ -79,14 +79,9 @@ Result<void> FrameRunner::State::begin_packing(Program& program, const std::map<
   if (auto prepared = without_exceptions([&] { return prepare(program, host); }); !prepared)
     return given_up(std::move(prepared));
   packing.emplace(&program, host, choose);
-  const auto pack = [this, &program, &own = packing->host, look = choose.look] {
+  packing->uploaded = beside([this, &program, &own = packing->host, look = choose.look] {
     return without_exceptions([&] { return upload(program, own, look); });
-  };
-  try {
-    packing->uploaded = std::async(std::launch::async, pack);
-  } catch (const std::exception&) {  // no more threads to be had
-    packing->uploaded = std::async(std::launch::deferred, pack);
-  }
+  });
   return {};
 }
 

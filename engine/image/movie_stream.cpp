@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/beside.h"
 #include "core/patient_reader.h"
 #include "core/text.h"
 #include "image/ffmpeg_module.h"
@@ -220,7 +221,7 @@ MovieStream::~MovieStream() {
 }
 
 void MovieStream::begin_next() {
-  state_->coming = std::async(std::launch::async, [frames = state_->frames.get()] { return frames->next(); });
+  state_->coming = beside([frames = state_->frames.get()] { return frames->next(); });
 }
 
 double MovieStream::fps() const { return state_->fps; }

@@ -5,6 +5,7 @@
 #include <future>
 #include <set>
 
+#include "core/beside.h"
 #include "core/exception.h"
 #include "core/locale.h"
 #include "core/parallel.h"
@@ -104,9 +105,8 @@ void Session::begin_opening() {
   State& s = *state_;
   if (s.device || s.failed || s.opening.valid()) return;
   parallel_for(2, [](std::size_t) {});  // loops find their threads there
-  s.opening = std::async(std::launch::async, [options = s.options.device, &diagnostics = *s.diagnostics] {
-    return State::open_device(options, diagnostics);
-  });
+  s.opening = beside(
+      [options = s.options.device, &diagnostics = *s.diagnostics] { return State::open_device(options, diagnostics); });
 }
 
 Result<void> Session::ready() {
@@ -156,15 +156,14 @@ void Session::State::warm_up(const Program& program) {
   const ProgramCache& programs = *stack->programs();
   if (warming_up.valid() || options.stack.reference || !WarmUp::helps(*device)) return;
   ProgramOptions wanted = programs.program_options();
-  warming_up =
-      std::async(std::launch::async, [&device = *device, kernels = programs.kernels(), path = stack->shaders().path(),
-                                      graph = program.graph(), wanted = std::move(wanted)] {
-        const PlainLocale plain;
-        auto other = WarmUp::create(device);
-        if (!other) return;
-        ShaderLibrary shaders(path);  // that of the stack is looked for elsewhere as scripts say
-        (void)(*other)->draw(shaders, kernels->compiler, graph, wanted);
-      });
+  warming_up = beside([&device = *device, kernels = programs.kernels(), path = stack->shaders().path(),
+                       graph = program.graph(), wanted = std::move(wanted)] {
+    const PlainLocale plain;
+    auto other = WarmUp::create(device);
+    if (!other) return;
+    ShaderLibrary shaders(path);  // that of the stack is looked for elsewhere as scripts say
+    (void)(*other)->draw(shaders, kernels->compiler, graph, wanted);
+  });
 }
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame,
