@@ -16,6 +16,7 @@
 #include "core/file.h"
 #include "core/file_record.h"
 #include "core/inside.h"
+#include "core/near_path.h"
 #include "core/own_file.h"
 #include "core/pack.h"
 #include "core/text.h"
@@ -108,7 +109,7 @@ std::vector<fs::path> SearchPath::asset_folders() const {
 
 fs::path SearchPath::find_asset(const std::string& name) const {
   for (const auto& folder : asset_folders())
-    if (is_file(folder / name, record.get())) return folder / name;
+    if (fs::path file = file_in(folder, name, record.get()); !file.empty()) return file;
   return {};
 }
 

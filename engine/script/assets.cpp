@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/file_record.h"
 #include "core/inside.h"
+#include "core/near_path.h"
 #include "core/pack.h"
 #include "core/text.h"
 #include "image/reader.h"
@@ -47,16 +48,6 @@ std::string script_of(lua_State* lua, const std::string& name) {
   }
   const Location caller = runtime.box->caller(lua);
   return caller.source < 0 ? "" : runtime.box->sources()[static_cast<std::size_t>(caller.source)].path;
-}
-
-/// Files with the same ending near where the name would be, for "did you mean".
-std::string nearest_file(const std::vector<fs::path>& roots, const std::string& name) {
-  const fs::path folder = fs::path(name).parent_path();
-  std::vector<std::string> names;
-  for (const auto& root : roots)
-    for (const auto& found : names_in(root / folder))
-      if (fs::path(found).extension() == fs::path(name).extension()) names.push_back((folder / found).string());
-  return nearest_name(name, names);
 }
 
 std::size_t bytes_of(const ImageData& data) { return data.pixels.size() * sizeof(float); }
@@ -186,14 +177,19 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
   }
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
-  if (!is_safe_entry(name, 8))
-    fail_at(lua, what, {"file", name, "leads out of the folders that scripts may read", kAllowed, {}});
+  if (!is_safe_entry(name, 8)) {
+    const std::string tidy = tidy_path(name);
+    fail_at(lua, what,
+            {"file", name,
+             tidy.empty() ? "leads out of the folders that scripts may read" : "is not how scripts name a file",
+             kAllowed, tidy});
+  }
   auto roots = runtime.path.asset_folders();
   const auto own = runtime.path.folders_of(key.second);
   if (!own.empty()) roots = own_first(std::move(roots), own.front() / name);
   for (const auto& root : roots) {
-    const fs::path file = root / name;
-    if (!is_file(file, runtime.path.record.get())) continue;
+    const fs::path file = file_in(root, name, runtime.path.record.get());
+    if (file.empty()) continue;
     const bool of_user = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
     if (of_user && !lies_in(file, root))
       fail_at(lua, what, {"file", name, fmt::format("is a link that leads out of {}", root.string()), kAllowed, {}});
@@ -203,7 +199,7 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     runtime.depends.files.emplace(file, is_first ? name : "");
     return file;
   }
-  fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
+  fail_at(lua, what, {"file", name, "there is no such file", kAllowed, near_path(roots, name)});
 }
 
 const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::string& correction) {

@@ -9,6 +9,7 @@
 #include "core/ascii.h"
 #include "core/file.h"
 #include "core/inside.h"
+#include "core/near_path.h"
 #include "core/text.h"
 #include "core/utf16.h"
 #include "core/version.h"
@@ -77,19 +78,10 @@ std::vector<fs::path> module_folders(lua_State* lua) {
   return own_first(std::move(folders), runtime.box->sources()[static_cast<std::size_t>(caller.source)].path);
 }
 
-// Modules that differ from `name` in the part behind its last point alone, and the one that is no file.
-std::vector<std::string> modules_beside(const std::vector<fs::path>& folders, const std::string& name) {
-  std::set<std::string> names{kLibrary};
-  const std::size_t point = name.rfind('.');
-  const std::string before = point == std::string::npos ? "" : name.substr(0, point + 1);
-  for (const auto& folder : folders) {
-    std::error_code ec;
-    for (fs::directory_iterator it((folder / module_file(name)).parent_path(), ec), end; !ec && it != end;
-         it.increment(ec))
-      if (it->path().extension() == ".lua" && is_identifier(it->path().stem().string()))
-        names.insert(before + it->path().stem().string());
-  }
-  return {names.begin(), names.end()};
+// What a name that is no module's may mean.
+std::string near_module(const std::vector<fs::path>& folders, const std::string& name) {
+  const std::string near = module_of_file(near_path(folders, module_file(name)));
+  return near.empty() ? nearest_name(name, std::vector<std::string>{kLibrary}) : near;
 }
 
 fs::path find_module(const Runtime& runtime, const std::vector<fs::path>& folders, const std::string& name) {
@@ -108,8 +100,7 @@ fs::path find_module(const Runtime& runtime, const std::vector<fs::path>& folder
     return path;
   }
   throw failure(fmt::format("require: there is no module '{}'", name), {},
-                "\"afterglow\", and scripts beside the preset or on the search path",
-                nearest_name(name, modules_beside(folders, name)));
+                "\"afterglow\", and scripts beside the preset or on the search path", near_module(folders, name));
 }
 
 int returns_nothing(lua_State* lua) {
@@ -234,8 +225,9 @@ DeclaredStack load_named_stack(lua_State* lua, const std::string& name) {
   }
   if (hits.empty()) {
     const auto names = runtime.path.preset_names();
+    const std::string plain = name.ends_with(".lua") ? name.substr(0, name.size() - 4) : name;
     throw failure(fmt::format("there is no preset '{}'", tidy_message(name, 60)), {}, join(names),
-                  nearest_name(name, names));
+                  std::ranges::count(names, plain) > 0 ? plain : nearest_name(plain, names));
   }
   // A preset may extend the one that it hides: those that are being loaded are passed over.
   const auto file = std::find_if(hits.begin(), hits.end(), [&](const fs::path& hit) {

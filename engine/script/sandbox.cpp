@@ -183,10 +183,34 @@ void Sandbox::raise(Error error) {
   std::abort();  // lua_error does not return
 }
 
+/// Of an error where the script is: the places in other scripts that called it, the nearest first, as far as what is
+/// called is a function, not a file that is loaded.
+void Sandbox::add_callers(lua_State* lua, Error& error) const {
+  constexpr std::size_t kMostCallers = 3;
+  constexpr int kMostLevels = 300;  // lua_getstack counts from the top each time
+  if (!error.trail.empty()) return;
+  Location inner;
+  lua_Debug info{};
+  for (int level = 0; level < kMostLevels && lua_getstack(lua, level, &info); ++level) {
+    if (!lua_getinfo(lua, "Sl", &info) || info.currentline <= 0) continue;
+    const Location where = location(info.source, info.currentline);
+    if (where.source < 0 || sources_[static_cast<std::size_t>(where.source)].library) continue;
+    const std::string& path = sources_[static_cast<std::size_t>(where.source)].path;
+    if (inner.source < 0 && path != error.file) return;
+    if (inner.source >= 0 && where.source != inner.source)
+      error.trail.push_back(fmt::format("called at {}:{}", path, where.line));
+    if (error.trail.size() >= kMostCallers || std::string_view(info.what) == "main") return;
+    inner = where;
+  }
+}
+
 // The message handler: runs where the error was raised, so it knows the line. Must not itself raise.
 int Sandbox::on_error(lua_State* lua) {
   Sandbox& box = of(lua);
-  if (box.raised(lua, 1)) return 1;
+  if (const Error* known = box.raised(lua, 1)) {
+    box.add_callers(lua, box.errors_[static_cast<std::size_t>(known - box.errors_.data())]);
+    return 1;
+  }
   Error error{ErrorKind::script, ""};
   Location where;
   if (lua_type(lua, 1) == LUA_TSTRING) {
@@ -201,6 +225,7 @@ int Sandbox::on_error(lua_State* lua) {
   }
   if (where.source < 0) where = box.caller(lua, 1);
   box.locate(error, where);
+  box.add_callers(lua, error);
   error.message = tidy_message(std::move(error.message));
   const void* id = box.keep(std::move(error));
   lua_pushlightuserdata(lua, const_cast<void*>(id));

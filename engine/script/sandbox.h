@@ -148,6 +148,7 @@ class Sandbox {
   static void* allocate(void* self, void* block, std::size_t old_size, std::size_t new_size);
   static void on_count(lua_State* lua, lua_Debug* info);
   static int on_error(lua_State* lua);
+  void add_callers(lua_State* lua, Error& error) const;
 
   ScriptLimits limits_;
   lua_State* lua_ = nullptr;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/near_path.h"
 #include "core/pack.h"
 #include "core/text.h"
 #include "image/srgb.h"
@@ -189,7 +190,11 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
       if (given.kind != Kind::text) return fail("not the name of a file");
       value.choice = given.text;
       if (given.text.empty()) return value;
-      if (!is_safe_entry(given.text, 8)) return fail("not a name inside of the folders that scripts may read");
+      if (!is_safe_entry(given.text, 8)) {
+        const std::string tidy = tidy_path(given.text);
+        return tidy.empty() ? fail("not a name inside of the folders that scripts may read")
+                            : fail("not how scripts name a file", tidy);
+      }
       if (!has_extension(schema, given.text)) return fail("no file of a kind that is allowed");
       return value;
     case SettingType::color:

@@ -151,6 +151,27 @@ TEST_F(PresetErrors, MissingPresetIsNamed) {
   }
 }
 
+TEST_F(PresetErrors, WhoCallsAnotherScriptsFunctionIsTold) {
+  write("lib/glows.lua", std::string(kUse) +
+                             "return { warm = function(intensity)\n"
+                             "  return fx.bloom { intensity = intensity }\nend }\n");
+  write("called.lua", std::string(kUse) +
+                          "local glows = require \"lib.glows\"\nreturn fx.stack {\n"
+                          "  glows.warm(0.3),\n  glows.warm(-3),\n}\n");
+  EXPECT_THAT(run({"check", "called.lua"}).err,
+              ::testing::MatchesRegex("[^\n]*lib/glows.lua:3: error: bloom.intensity = -3 is out of range[^\n]*\n"
+                                      "  called at called.lua:5\n"));
+}
+
+TEST_F(PresetErrors, OtherNamesOfPresetsAndModulesAreUnderstood) {
+  make_preset("own_look.lua");
+  write("lib/glows.lua", "return {}\n");
+  write("extends.lua", std::string(kUse) + "return fx.extend \"own_look.lua\" {}\n");
+  EXPECT_THAT(run({"check", "extends.lua"}).err, HasSubstr("did you mean 'own_look'?"));
+  write("requires.lua", "require \"Lib.Glows\"\n");
+  EXPECT_THAT(run({"check", "requires.lua"}).err, HasSubstr("did you mean 'lib.glows'?"));
+}
+
 TEST_F(PresetErrors, PictureInThePresetsPlaceIsCalledOne) {
   make_preset("look.lua");
   make_exr("a.exr");
