@@ -26,7 +26,7 @@ limits() {
     pack) echo "-max_len=16384 -malloc_limit_mb=64" ;;
     lut | preset | write_back | shader) echo "-max_len=16384" ;;
     json) echo "-max_len=8192" ;;
-    sound) echo "-max_len=32768" ;;
+    sound | stream) echo "-max_len=32768" ;;
     *) echo "-max_len=1024" ;;
   esac
 }
