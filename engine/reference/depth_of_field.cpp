@@ -264,6 +264,25 @@ Rgb behind_edge(const DoubleImage& source, const DoubleImage& circles, int x, in
 
 }  // namespace
 
+double autofocus(const DoubleImage& depth, const FocusPoint& point) {
+  constexpr int kPoints = 8;
+  std::vector<double> dioptres;
+  for (int j = 0; j < kPoints; ++j)
+    for (int i = 0; i < kPoints; ++i) {
+      const auto place = [&](double middle, int side, int index) {
+        const double at = middle * side + ((index + 0.5) / kPoints - 0.5) * point.area * depth.height;
+        return glm::clamp(static_cast<int>(std::floor(at)), 0, side - 1);
+      };
+      dioptres.push_back(1 / depth.at(place(point.x, depth.width, i), place(point.y, depth.height, j)).r);
+    }
+  std::ranges::sort(dioptres);
+  return 1 / dioptres[dioptres.size() / 2];
+}
+
+double follow_focus(double before, double wanted, double speed, double seconds) {
+  return 1 / (1 / wanted + (1 / before - 1 / wanted) * std::exp(-speed * seconds));
+}
+
 DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& s) {
   const double f = s.focal_length * 1e-3, d = glm::max(s.focus_distance, 1.01 * f);
   const double aperture = f / s.aperture, pixels_per_metre = depth.height / (s.sensor_height * 1e-3);

@@ -197,19 +197,23 @@ DoubleImage linear_depth(DoubleImage depth, double near, double far, bool revers
 }
 
 DoubleImage run_depth_of_field(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
-  const DepthOfField settings{.focus_distance = s.number("focus_distance"),
-                              .aperture = s.number("aperture"),
-                              .focal_length = s.number("focal_length"),
-                              .sensor_height = s.number("sensor_height"),
-                              .max_radius = s.number("max_radius"),
-                              .samples = s.integer("samples"),
-                              .blades = s.integer("blades"),
-                              .rotation = s.number("rotation"),
-                              .squeeze = s.number("squeeze"),
-                              .cat_eye = s.number("cat_eye")};
-  if (s.is("depth_space", "linear")) return depth_of_field(source, *inputs.depth, settings);
-  return depth_of_field(source, linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z")),
-                        settings);
+  const DoubleImage depth = s.is("depth_space", "linear")
+                                ? *inputs.depth
+                                : linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z"));
+  const auto [x, y] = s.pair("focus_point");
+  const bool automatic = s.is("focus_mode", "point");
+  const DepthOfField settings{
+      .focus_distance = automatic ? autofocus(depth, {x, y, s.number("focus_area")}) : s.number("focus_distance"),
+      .aperture = s.number("aperture"),
+      .focal_length = s.number("focal_length"),
+      .sensor_height = s.number("sensor_height"),
+      .max_radius = s.number("max_radius"),
+      .samples = s.integer("samples"),
+      .blades = s.integer("blades"),
+      .rotation = s.number("rotation"),
+      .squeeze = s.number("squeeze"),
+      .cat_eye = s.number("cat_eye")};
+  return depth_of_field(source, depth, settings);
 }
 
 DoubleImage run_motion_blur(const DoubleImage& source, const Inputs& inputs, const Settings& s) {

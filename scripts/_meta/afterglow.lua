@@ -173,7 +173,11 @@
 
 ---Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@class afterglow.settings.depth_of_field : afterglow.EntryKeys
----@field focus_distance? number|afterglow.Moving  Distance of what is sharp. 0.01…1000000 m, default 5
+---@field focus_mode? "distance"|"point"|afterglow.OfTime  distance: focus_distance is sharp. point: an autofocus; what is at focus_point in the picture is sharp, found anew in each frame. default "distance"
+---@field focus_distance? number|afterglow.Moving  Distance of what is sharp, for focus_mode distance. 0.01…1000000 m, default 5
+---@field focus_point? number[]|afterglow.Moving  Where in the picture the autofocus looks: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field focus_area? number|afterglow.Moving  Side of the square around focus_point that the autofocus looks at, in heights of the picture; the median of the distances in it counts. 0…1, default 0.05
+---@field focus_speed? number|afterglow.Moving  How fast the autofocus follows: 4 is nine tenths of the way in 0.6 s. The first frame is focused at once. 0.01…1000 1/s, default 4
 ---@field aperture? number|afterglow.Moving  The smaller, the more blur. 0.1…64 f-number, default 1.4
 ---@field focal_length? number|afterglow.Moving  The longer, the more blur. 1…1000 mm, default 50
 ---@field sensor_height? number|afterglow.Moving  Height of the sensor or film: 24 is full frame. 1…200 mm, default 24

@@ -5,12 +5,34 @@
 -- few texels, and its neighbours those between, so that none of them shows. Settings as of Unity's URP (Bokeh) and Blender's cameras. math.md §35.
 local fx = require "afterglow"
 
+local kPoints = 8  -- of the autofocus, each way
+
+-- Dioptres of what the autofocus finds, in one texel.
+local function found_focus(g, s, source, depth, clip)
+  local side = s.focus_area * source.height / kPoints
+  local function at(middle) return middle + (0.5 - kPoints / 2) * side end
+  local samples = g:pass { shader = "depth_of_field/focus_samples", depth = depth, size = { kPoints, kPoints }, spacing = { side, side },
+                           first = { at(s.focus_point[1] * source.width), at(s.focus_point[2] * source.height) },
+                           device_input = clip.device_input, reversed_z = clip.reversed_z, inverse_clip = clip.inverse_clip }
+  local wanted = g:pass { shader = "depth_of_field/focus_median", values = samples, size = { 1, 1 } }
+  -- A start that was off makes no more difference than a hundredth of that after the pre-roll.
+  local frames = math.min(math.ceil(math.log(100) / s.focus_speed / g.frame_time), 10000)
+  local before = g:history { name = "focus", first = wanted, pre_roll = frames }
+  local focused = g:pass { shader = "depth_of_field/focus_follow", source = wanted, before = before, left = math.exp(-s.focus_speed * g.frame_time) }
+  g:keep(before, focused)
+  return focused
+end
+
 return fx.effect {
   name = "depth_of_field",
   doc = "Blurs what is out of focus, by depth, as a camera with this lens does.",
   at = "post_process", order = 10, space = "scene",
   settings = {
-    focus_distance = fx.float { min = 0.01, max = 1e6, default = 5, unit = "m", doc = "Distance of what is sharp." },
+    focus_mode = fx.enum { "distance", "point", default = "distance", doc = "distance: focus_distance is sharp. point: an autofocus; what is at focus_point in the picture is sharp, found anew in each frame." },
+    focus_distance = fx.float { min = 0.01, max = 1e6, default = 5, unit = "m", doc = "Distance of what is sharp, for focus_mode distance." },
+    focus_point = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "Where in the picture the autofocus looks: {0, 0} is the upper left corner, {1, 1} the lower right." },
+    focus_area = fx.float { min = 0, max = 1, default = 0.05, doc = "Side of the square around focus_point that the autofocus looks at, in heights of the picture; the median of the distances in it counts." },
+    focus_speed = fx.float { min = 0.01, max = 1000, default = 4, unit = "1/s", doc = "How fast the autofocus follows: 4 is nine tenths of the way in 0.6 s. The first frame is focused at once." },
     aperture = fx.float { min = 0.1, max = 64, default = 1.4, unit = "f-number", doc = "The smaller, the more blur." },
     focal_length = fx.float { min = 1, max = 1000, default = 50, unit = "mm", doc = "The longer, the more blur." },
     sensor_height = fx.float { min = 1, max = 200, default = 24, unit = "mm", doc = "Height of the sensor or film: 24 is full frame." },
@@ -31,17 +53,21 @@ return fx.effect {
   -- Where a pixel sees nothing but the soft rims of circles, which are wide where the iris is narrow, its light is what little these weigh divided by itself.
   -- Neither linear nor monotone: texels of coarse levels stand where their light lies.
   holds = { "black", "constant", "bounded", continuous = 1,
-    error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.depth_space == "linear" and s.squeeze >= 0.4 and s.squeeze <= 2.5 end } },
+    error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.focus_mode == "distance" and s.depth_space == "linear" and s.squeeze >= 0.4 and s.squeeze <= 2.5 end } },
   build = function(g, s, source)
     local f = s.focal_length / 1000
     local d = math.max(s.focus_distance, 1.01 * f)  -- nearer nothing is ever sharp
-    -- Radius for what is infinitely far: half the diameter f²/(N(d − f)) on the sensor, in pixels.
-    local infinity = 0.5 * f * f / (s.aperture * (d - f)) / (s.sensor_height / 1000) * source.height
+    -- Radius for what is infinitely far: half the diameter f²/(N(d − f)) on the sensor, in pixels; here for d − f = 1 m.
+    local at_metre = 0.5 * f * f / s.aperture / (s.sensor_height / 1000) * source.height
     local radius = math.max(s.max_radius, 1e-3)
     local depth = g:input("depth")
+    local clip = { device_input = s.depth_space == "device", reversed_z = s.reversed_z, inverse_clip = { 1 / s.near, 1 / s.far } }
+    local is_automatic = s.focus_mode == "point"
+    local focused = is_automatic and found_focus(g, s, source, depth, clip) or depth  -- which is not read
+    local lens = is_automatic and { f, at_metre, radius } or { d, math.min(at_metre / (d - f), 1e6), radius }
     local function with_circles(pass)
-      pass.depth, pass.focus = depth, { d, math.min(infinity, 1e6), radius }
-      pass.device_input, pass.reversed_z, pass.inverse_clip = s.depth_space == "device", s.reversed_z, { 1 / s.near, 1 / s.far }
+      pass.depth, pass.lens, pass.is_automatic, pass.focused = depth, lens, is_automatic, focused
+      for name, value in pairs(clip) do pass[name] = value end
       return g:pass(pass)
     end
     -- In the small picture no circle is wider than 32 pixels. One that is small already stays as it is: discs of few pixels would be squares.

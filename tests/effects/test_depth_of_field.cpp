@@ -226,6 +226,49 @@ TEST_F(Effects, WhatIsInFocusStaysBitForBit) {
   EXPECT_TRUE(agrees(run_stack(kWide, scene, Way::plain).result, scene.source, 0, kRgba));
 }
 
+std::string automatic(const FocusPoint& point, double speed = 4) {
+  return fmt::format(
+      "fx.depth_of_field {{ focus_mode = \"point\", focus_point = {{ {}, {} }}, focus_area = {}, "
+      "focus_speed = {}, aperture = 1, max_radius = 9 }}",
+      point.x, point.y, point.area, speed);
+}
+
+DoubleImage at_distance(const Scene& scene, double distance) {
+  return depth_of_field(scene.source, *scene.depth, {.focus_distance = distance, .aperture = 1, .max_radius = 9});
+}
+
+TEST_F(Effects, AnAutofocusAgrees) {
+  std::vector<EffectCase> cases;
+  for (const FocusPoint& point : {FocusPoint{}, FocusPoint{0, 1, 0.3}, FocusPoint{0.71, 0.22, 1}, FocusPoint{1, 0, 0}})
+    cases.push_back({automatic(point), [=](const Scene& s) { return at_distance(s, autofocus(*s.depth, point)); }});
+  agree_everywhere(cases, kDecisions);
+}
+
+TEST_F(Effects, AnAutofocusIsOnWhatFillsMostOfItsSquare) {
+  const Scene scene = halves(2, 50);
+  EXPECT_NEAR(autofocus(*scene.depth, {0.5, 0.5, 0.3}), 2, 1e-9) << "of two halves the nearer";
+  EXPECT_NEAR(autofocus(*scene.depth, {0.54, 0.5, 0.3}), 50, 1e-9);
+  EXPECT_NEAR(autofocus(*scene.depth, {0.2, 0.5, 0}), 2, 1e-9);
+  EXPECT_TRUE(
+      agrees(run_stack(automatic({0.54, 0.5, 0.3}), scene, Way::plain).result, at_distance(scene, 50), 1e-3, kRgba));
+}
+
+TEST_F(Effects, AnAutofocusFollowsWhatMoves) {
+  constexpr double kSpeed = 3;
+  const FocusPoint point{0.5, 0.5, 0.2};
+  Scene scene = random_scene({60, 40}, 68);
+  TemporalPlayer player(automatic(point, kSpeed));
+  double distance = 0;
+  for (int frame = 1; frame <= 12; ++frame) {
+    scene.depth = DoubleImage(60, 40, Rgba(frame < 4 ? 3 : frame < 9 ? 60 : 0.8, 0, 0, 1));
+    for (int x = 0; x < 20; ++x) scene.depth->at(x, 5) = Rgba(1.5, 0, 0, 1);
+    const double wanted = autofocus(*scene.depth, point);
+    distance = frame == 1 ? wanted : follow_focus(distance, wanted, kSpeed, 1.0 / 24);
+    EXPECT_TRUE(agrees(player.play(scene, frame), at_distance(scene, distance), 2e-3, kRgba)) << frame;
+  }
+  EXPECT_LT(distance, 3);
+}
+
 // A driver that compiles the shader again for each frame's parameters, as lavapipe does when it can see them, keeps
 // about 1 MB of every frame.
 TEST_F(Effects, FramesLeaveNothingBehind) {
