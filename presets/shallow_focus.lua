@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 -- Product and portrait shots of a scene with depth: a fast lens a few metres away, everything behind falls apart into discs, dust on the glass
--- catches the lights. Set the distance with `--set depth_of_field.focus_distance=3`, or let `focus_mode=point` find it; without depth the blur is
+-- catches the lights. Set the distance with `--set depth_of_field.focus_distance=3`, or let `depth_of_field.focus_mode=point` find it; without depth the blur is
 -- skipped with a warning.
 local fx = require "afterglow"
 
