@@ -24,6 +24,9 @@ Rgb cones_of(double x, double y) {
   return rows({0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}) * xyz;
 }
 
+/// y on the daylight locus.
+double judd(double x) { return 2.87 * x - 3 * x * x - 0.27509507; }
+
 /// What is brighter than white stays.
 double soft_light(double base, double blend) {
   if (base >= 1) return base;
@@ -40,11 +43,30 @@ Rgb chroma(const Rgb& color, double scale) {
 
 }  // namespace
 
-DoubleImage white_balance(const DoubleImage& source, double temperature, double tint) {
-  const double t1 = temperature / 65, t2 = tint / 65;
-  const double x = 0.31271 - t1 * (t1 < 0 ? 0.1 : 0.05);
-  const double y = 2.87 * x - 3 * x * x - 0.27509507 + t2 * 0.05;
-  const Rgb balance = Rgb(0.949237, 1.03542, 1.08728) / cones_of(x, y);
+glm::dvec2 white_of_kelvin(double kelvin) {
+  const double t = 1000 / kelvin, t2 = t * t, t3 = t2 * t;
+  glm::dvec2 day(kelvin <= 7000 ? 0.244063 + 0.09911 * t + 2.9678 * t2 - 4.6070 * t3
+                                : 0.237040 + 0.24748 * t + 1.9018 * t2 - 2.0064 * t3,
+                 0);
+  const double n = 1000 / 6504.0;  // D65's own x has other last digits
+  day.x += 0.31271 - (0.244063 + 0.09911 * n + 2.9678 * n * n - 4.6070 * n * n * n);
+  day.y = judd(day.x);
+  if (kelvin >= 4000) return day;
+  glm::dvec2 lamp(0.179910 + 0.8776956 * t - 0.2343589 * t2 - 0.2661239 * t3, 0);
+  const double x = lamp.x, x2 = x * x, x3 = x2 * x;
+  lamp.y = kelvin < 2222 ? -1.1063814 * x3 - 1.34811020 * x2 + 2.18555832 * x - 0.20219683
+                         : -0.9549476 * x3 - 1.37418593 * x2 + 2.09137015 * x - 0.16748867;
+  return glm::mix(day, lamp, saturate((1 / kelvin - 1 / 4000.0) / (1 / 2900.0 - 1 / 4000.0)));
+}
+
+DoubleImage white_balance(const DoubleImage& source, const WhiteBalance& s) {
+  const double t1 = s.temperature / 65, t2 = s.tint / 65;
+  const glm::dvec2 white = white_of_kelvin(s.kelvin);
+  const double x = white.x - t1 * (t1 < 0 ? 0.1 : 0.05);
+  const double y = judd(x) + (white.y - judd(white.x)) + t2 * 0.05;
+  const Rgb neutral(0.949237, 1.03542, 1.08728), cones = cones_of(x, y);
+  Rgb balance;
+  for (int i = 0; i < 3; ++i) balance[i] = cones[i] * 16 > neutral[i] ? neutral[i] / cones[i] : 16;
   const auto to_cones = rows({3.90405e-1, 5.49941e-1, 8.92632e-3}, {7.08416e-2, 9.63172e-1, 1.35775e-3},
                              {2.31082e-2, 1.28021e-1, 9.36245e-1});
   const auto from_cones = rows({2.85847e+0, -1.62879e+0, -2.48910e-2}, {-2.10182e-1, 1.15820e+0, 3.24281e-4},

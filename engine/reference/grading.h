@@ -4,13 +4,20 @@
 #pragma once
 
 #include <array>
+#include <glm/vec2.hpp>
 
 #include "reference/double_image.h"
 
 namespace afterglow::reference {
 
-/// Temperature and tint −100…100. What gets negative becomes 0.
-DoubleImage white_balance(const DoubleImage& source, double temperature, double tint);
+struct WhiteBalance {
+  double kelvin = 6504;
+  double temperature = 0, tint = 0;  ///< −100…100
+};
+/// What gets negative becomes 0.
+DoubleImage white_balance(const DoubleImage& source, const WhiteBalance& settings);
+/// CIE 1931 x and y of a light of 2000…25000 K: a lamp's up to 2900 K, daylight from 4000 K on.
+glm::dvec2 white_of_kelvin(double kelvin);
 
 /// Percent; row i makes channel i.
 using ChannelMix = std::array<std::array<double, 3>, 3>;

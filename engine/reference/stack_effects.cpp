@@ -31,7 +31,8 @@ std::uint32_t frame_of(const Inputs& inputs) {
 // ---- grading
 
 DoubleImage run_white_balance(const DoubleImage& source, const Inputs&, const Settings& s) {
-  return white_balance(source, s.number("temperature"), s.number("tint"));
+  return white_balance(
+      source, {.kelvin = s.number("kelvin"), .temperature = s.number("temperature"), .tint = s.number("tint")});
 }
 
 DoubleImage run_channel_mixer(const DoubleImage& source, const Inputs&, const Settings& s) {

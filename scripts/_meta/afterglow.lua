@@ -487,8 +487,9 @@
 ---@field center? number[]|afterglow.Moving  The brightest point: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
 ---@field rounded? boolean|afterglow.OfTime  A circle, whatever the shape of the picture; else it is as wide and high as the picture. default false
 
----Takes a colour cast away or adds one: temperature and tint.
+---Takes a colour cast away or adds one: kelvins of the light, temperature and tint.
 ---@class afterglow.settings.white_balance : afterglow.EntryKeys
+---@field kelvin? number|afterglow.Moving  Colour temperature of the light in which the picture was taken: what it makes of white becomes white. Lamps have 2700 to 3200, the sun at noon 5500, shade 7500; 6504 (D65) changes nothing. 2000…25000 K, default 6504
 ---@field temperature? number|afterglow.Moving  Above 0 warmer (yellow), below 0 colder (blue). -100…100, default 0
 ---@field tint? number|afterglow.Moving  Above 0 towards magenta, below 0 towards green. -100…100, default 0
 
@@ -598,7 +599,7 @@
 ---@field tone_mapping fun(settings: afterglow.settings.tone_mapping): afterglow.Entry  Brings scene-linear light into display range.
 ---@field transition fun(settings: afterglow.settings.transition): afterglow.Entry  Goes over to another picture: dissolve, fade, wipe, iris, clock, blinds, scatter, push.
 ---@field vignette fun(settings: afterglow.settings.vignette): afterglow.Entry  Darkens or colours the picture towards its corners.
----@field white_balance fun(settings: afterglow.settings.white_balance): afterglow.Entry  Takes a colour cast away or adds one: temperature and tint.
+---@field white_balance fun(settings: afterglow.settings.white_balance): afterglow.Entry  Takes a colour cast away or adds one: kelvins of the light, temperature and tint.
 
 ---What `fx.mask` holds; masks of yours are masks/NAME.lua.
 ---@class afterglow.Masks

@@ -15,9 +15,10 @@ using namespace reference;
 
 std::string text(const Rgb& c) { return fmt::format("{{ {}, {}, {} }}", c.r, c.g, c.b); }
 
-EffectCase balanced(double temperature, double tint) {
-  return {fmt::format("fx.white_balance {{ temperature = {}, tint = {} }}", temperature, tint),
-          [=](const Scene& s) { return white_balance(s.source, temperature, tint); }};
+EffectCase balanced(const WhiteBalance& v) {
+  return {
+      fmt::format("fx.white_balance {{ kelvin = {}, temperature = {}, tint = {} }}", v.kelvin, v.temperature, v.tint),
+      [=](const Scene& s) { return white_balance(s.source, v); }};
 }
 
 EffectCase mixed(const ChannelMix& m) {
@@ -52,7 +53,11 @@ EffectCase graded(const LiftGammaGain& v) {
 }
 
 TEST_F(Effects, WhiteBalanceAgrees) {
-  agree_everywhere({balanced(30, 0), balanced(-100, 0), balanced(100, 100), balanced(12, -60)});
+  agree_everywhere({balanced({.temperature = 30}), balanced({.temperature = -100}),
+                    balanced({.temperature = 100, .tint = 100}), balanced({.temperature = 12, .tint = -60}),
+                    balanced({.kelvin = 3200}), balanced({.kelvin = 2000, .temperature = -20}),
+                    balanced({.kelvin = 25000, .tint = 10}), balanced({.kelvin = 6505}),
+                    balanced({.kelvin = 2000, .temperature = -100, .tint = 100})});
   expect_skipped("fx.white_balance {}", "all settings are neutral");
 }
 
@@ -63,6 +68,35 @@ TEST_F(Effects, WarmWhiteBalanceIsWarm) {
   EXPECT_GT(warm[1], warm[2]);
   const auto green = run_stack("fx.white_balance { tint = -50 }", grey, Way::plain).result;
   EXPECT_GT(green[1], green[0]);
+}
+
+TEST_F(Effects, KelvinsAreThoseOfTabulatedLights) {
+  // Illuminants A, D50, D55, D65 and D75 of CIE 15, with the temperatures of today's constants; a candle by Planck's
+  // law.
+  const struct {
+    double kelvin, x, y;
+  } kLights[] = {{2856, 0.44758, 0.40745}, {5003, 0.34567, 0.35850}, {5503, 0.33242, 0.34743},
+                 {6504, 0.31271, 0.32902}, {7504, 0.29902, 0.31485}, {2000, 0.52669, 0.41331}};
+  for (const auto& light : kLights) {
+    const glm::dvec2 white = white_of_kelvin(light.kelvin);
+    EXPECT_NEAR(white.x, light.x, 6e-4) << light.kelvin;
+    EXPECT_NEAR(white.y, light.y, 6e-4) << light.kelvin;
+    // What such a light makes of white becomes grey.
+    const Rgb xyz(light.x / light.y, 1, (1 - light.x - light.y) / light.y);
+    const Rgb lit = 0.3 * Rgb(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
+                              -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
+                              0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z);
+    const Scene scene{"lit", DoubleImage(1, 1, Rgba(lit, 1)), {}, {}};
+    const auto grey = run_stack(balanced({.kelvin = light.kelvin, .tint = 1e-9}).entries, scene, Way::plain).result;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(grey[static_cast<std::size_t>(c)], 0.3, 4e-3) << light.kelvin;
+  }
+  double before = 1;
+  for (double kelvin = 2000; kelvin <= 25000; kelvin *= 1.002) {
+    const double x = white_of_kelvin(kelvin).x;
+    EXPECT_LT(x, before) << kelvin;
+    EXPECT_GT(x, before - 1e-3 - (kelvin < 2001 ? 1 : 0)) << "no jumps at " << kelvin;
+    before = x;
+  }
 }
 
 TEST_F(Effects, ChannelMixerAgrees) {
