@@ -46,6 +46,7 @@ double blend_channel(double b, double s, const std::string& mode) {
   if (mode == "darken") return std::min(b, s);
   if (mode == "overlay") return in_gamma(b, s, overlay);
   if (mode == "soft_light") return in_gamma(b, s, soft_light);
+  if (mode == "hard_light") return in_gamma(s, b, overlay);
   throw std::out_of_range(mode);
 }
 
@@ -174,6 +175,12 @@ PixelMask pixel_mask(const Mask& mask, const Inputs& inputs, Size size) {
 }  // namespace
 
 Rgb blend(const Rgb& below, const Rgb& above, const std::string& mode) {
+  const auto with_colour_of = [](const Rgb& from, const Rgb& light) {
+    const Rgb c = glm::max(from, Rgb(0)) + 1e-4;
+    return luminance(glm::max(light, Rgb(0))) / luminance(c) * c;
+  };
+  if (mode == "color") return with_colour_of(above, below);
+  if (mode == "luminosity") return with_colour_of(below, above);
   return {blend_channel(below.r, above.r, mode), blend_channel(below.g, above.g, mode),
           blend_channel(below.b, above.b, mode)};
 }

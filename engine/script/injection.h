@@ -26,8 +26,8 @@ inline const std::vector<std::string>& auxiliary_inputs() {
 
 /// How an entry's result is put over what it was given (math.md §20).
 inline const std::vector<std::string>& blend_modes() {
-  static const std::vector<std::string> modes{"normal",  "add",        "screen",  "multiply",
-                                              "overlay", "soft_light", "lighten", "darken"};
+  static const std::vector<std::string> modes{"normal",  "add",    "screen",     "multiply", "overlay",   "soft_light",
+                                              "lighten", "darken", "hard_light", "color",    "luminosity"};
   return modes;
 }
 

@@ -2,7 +2,7 @@
 -- SPDX-License-Identifier: MIT
 -- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate
 
----@alias afterglow.Blend "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"
+---@alias afterglow.Blend "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"|"hard_light"|"color"|"luminosity"
 
 ---Keys that every effect of a stack takes besides its settings.
 ---@class afterglow.EntryKeys
@@ -272,7 +272,7 @@
 ---A picture from a file over the picture: a logo, dust, a leak of light.
 ---@class afterglow.settings.image_overlay : afterglow.EntryKeys
 ---@field file? string|afterglow.OfTime  The picture, with its alpha. None: no effect. Numbered ones: `function(t) return ("leak.%04d.png"):format(t.frame) end`. default ""
----@field blend? "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"|afterglow.OfTime  How it is laid over. add, screen: light on black; multiply: shade on white. default "normal"
+---@field blend? "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"|"hard_light"|"color"|"luminosity"|afterglow.OfTime  How it is laid over. add, screen: light on black; multiply: shade on white. default "normal"
 ---@field fit? "cover"|"contain"|"stretch"|"tile"|afterglow.OfTime  contain: as large as fits in; cover: so that nothing is left free; stretch: the shape of the picture; tile: in its own size, again and again. default "contain"
 ---@field size? number|afterglow.Moving  Factor of the size that fit gives. 0.1 of contain: a logo. 0.001…100, default 1
 ---@field position? number[]|afterglow.Moving  Where it is: {0, 0} in the upper left corner, {1, 1} in the lower right. Held to whole pixels, so that what is sharp stays sharp. {x, y}, each 0…1, default {0.5, 0.5}

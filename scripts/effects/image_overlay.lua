@@ -6,7 +6,8 @@ local fx = require "afterglow"
 local placed = require "lib.placed"
 
 -- Numbers: shaders/lib/blend.glsl.
-local blends = { normal = 0, add = 1, screen = 2, multiply = 3, overlay = 4, soft_light = 5, lighten = 6, darken = 7 }
+local blends = { normal = 0, add = 1, screen = 2, multiply = 3, overlay = 4, soft_light = 5, lighten = 6, darken = 7,
+  hard_light = 8, color = 9, luminosity = 10 }
 
 return fx.effect {
   name = "image_overlay",
@@ -14,7 +15,7 @@ return fx.effect {
   at = "after_post_process", order = 210,
   settings = {
     file = fx.file { extensions = { "png", "exr", "tif", "tiff", "hdr", "jpg", "jpeg", "webp" }, doc = "The picture, with its alpha. None: no effect. Numbered ones: `function(t) return (\"leak.%04d.png\"):format(t.frame) end`." },
-    blend = fx.enum { "normal", "add", "screen", "multiply", "overlay", "soft_light", "lighten", "darken", default = "normal", doc = "How it is laid over. add, screen: light on black; multiply: shade on white." },
+    blend = fx.enum { "normal", "add", "screen", "multiply", "overlay", "soft_light", "lighten", "darken", "hard_light", "color", "luminosity", default = "normal", doc = "How it is laid over. add, screen: light on black; multiply: shade on white." },
     fit = fx.enum { "cover", "contain", "stretch", "tile", default = "contain", doc = "contain: as large as fits in; cover: so that nothing is left free; stretch: the shape of the picture; tile: in its own size, again and again." },
     size = fx.float { min = 0.001, max = 100, default = 1, doc = "Factor of the size that fit gives. 0.1 of contain: a logo." },
     position = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "Where it is: {0, 0} in the upper left corner, {1, 1} in the lower right. Held to whole pixels, so that what is sharp stays sharp." },

@@ -10,6 +10,7 @@
 #include "files.h"
 #include "image/cryptomatte.h"
 #include "image/writer.h"
+#include "reference/color.h"
 #include "reference/composite.h"
 #include "reference/tone_mapping.h"
 
@@ -18,7 +19,8 @@ namespace {
 
 using namespace reference;
 
-constexpr const char* kModes[] = {"normal", "add", "screen", "multiply", "overlay", "soft_light", "lighten", "darken"};
+constexpr const char* kModes[] = {"normal",  "add",    "screen",     "multiply", "overlay",   "soft_light",
+                                  "lighten", "darken", "hard_light", "color",    "luminosity"};
 
 /// The stack's own entries, as the bench gives them to the oracle, on the scene.
 DoubleImage truth(const std::string& entries, const Scene& scene) {
@@ -97,8 +99,21 @@ TEST_F(Effects, BlendModesAreWhatTheirNamesSay) {
   EXPECT_GT(at(0.2, 0.9, "soft_light"), 0.2);
   EXPECT_LT(at(0.2, 0.01, "overlay"), 0.2);
   EXPECT_DOUBLE_EQ(at(4, 0.1, "soft_light"), 4);
+  EXPECT_NEAR(at(0.2, grey, "hard_light"), 0.2, 1e-12);
+  EXPECT_LT(at(0.2, 0.01, "hard_light"), 0.01);
+  // The one gives its colour, the other its luminance, however bright.
+  const Rgb red(0.8, 0.1, 0.05), bright(2, 6, 3);
+  for (const char* mode : {"color", "luminosity"}) {
+    const Rgb &hue = mode == std::string("color") ? bright : red, &light = mode == std::string("color") ? red : bright;
+    const Rgb made = blend(red, bright, mode);
+    EXPECT_NEAR(reference::luminance(made), reference::luminance(light), 1e-12) << mode;
+    EXPECT_NEAR(made.g / made.r, hue.g / hue.r, 2e-3) << mode;
+    EXPECT_NEAR(made.b / made.r, hue.b / hue.r, 2e-3) << mode;
+  }
+  EXPECT_NEAR(glm::distance(blend(red, Rgb(0), "color"), Rgb(reference::luminance(red))), 0, 1e-6)
+      << "black has no colour";
   // Continuous where W3C's formulas end.
-  for (const char* mode : {"screen", "overlay", "soft_light"})
+  for (const char* mode : {"screen", "overlay", "soft_light", "hard_light"})
     for (const double b : {0.5, 1.0, std::pow(0.25, 2.2), grey})
       for (const double s : {0.2, 0.7, 1.0, 1.5})
         EXPECT_NEAR(at(b - 1e-9, s, mode), at(b + 1e-9, s, mode), 1e-7) << mode;

@@ -37,7 +37,8 @@ TEST_F(Effects, ImageOverlayAgrees) {
                     laid("small.exr", small, {.fit = Fit::tile, .size = 2.4}),
                     laid("large.exr", large, {.fit = Fit::tile, .size = 0.21})},
                    kBetweenPixels);
-  for (const char* blend : {"add", "screen", "multiply", "overlay", "soft_light", "lighten", "darken"})
+  for (const char* blend :
+       {"add", "screen", "multiply", "overlay", "soft_light", "lighten", "darken", "hard_light", "color", "luminosity"})
     agree_everywhere({laid("large.exr", large, {.blend = blend, .fit = Fit::stretch})}, kBetweenPixels);
   expect_skipped("fx.image_overlay { }", "file is not given");
 }

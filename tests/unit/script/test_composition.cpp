@@ -195,7 +195,7 @@ TEST_F(Composition, WhatIsWrongIsSaid) {
   EXPECT_THAT(
       error("fx.a { blend = \"sceen\" }"),
       HasSubstr("a.blend = \"sceen\" is not a choice; allowed: normal, add, screen, multiply, overlay, soft_light, "
-                "lighten, darken; did you mean 'screen'?"));
+                "lighten, darken, hard_light, color, luminosity; did you mean 'screen'?"));
   EXPECT_THAT(error("fx.a { opacity = 2 }"), HasSubstr("a.opacity = 2 is out of range; allowed: 0…1"));
   EXPECT_THAT(error("fx.a { mask = \"luma\" }"), HasSubstr("mask = \"luma\" is not a mask; allowed: fx.mask.NAME"));
   EXPECT_THAT(error("fx.a { mask = fx.mask.lumma { } }"), HasSubstr("unknown mask 'lumma'"));
