@@ -172,11 +172,12 @@ TEST_F(Effects, LutSpacesAreThoseOfTheOracle) {
   }
 }
 
+// Not fused, as that is compared with the oracle above: kernels of several rows take seven times as long to compile.
 TEST_F(Effects, LutSpacesGoThereAndBack) {
   write_plain_tables();
   const Scene light = colours_of(-10, 1.5, true);
   for (const auto& name : table_spaces()) {
-    const Made made = run_stack(through(name, "same"), light, Way::fused);
+    const Made made = run_stack(through(name, "same"), light, Way::plain);
     for (std::size_t i = 0; i < light.source.pixels.size(); ++i) {
       const Rgb wanted(light.source.pixels[i]);
       const double size = glm::max(wanted.r, glm::max(wanted.g, wanted.b));
@@ -197,12 +198,12 @@ TEST_F(Effects, LutSpacesRiseAndStayFiniteAtTheirEnds) {
   greys.source = in_floats(greys.source);
   for (const auto& name : table_spaces()) {
     for (const char* output : {"linear", "same"}) {
-      const Made made = run_stack(through(name, output), greys, Way::fused);
+      const Made made = run_stack(through(name, output), greys, Way::plain);
       EXPECT_TRUE(all_finite(made.result)) << name;
       for (std::size_t x = 1; x < 64; ++x)
         EXPECT_GE(made.result[4 * x + 1], made.result[4 * x - 3] * 0.99999F) << name << " " << output << " " << x;
     }
-    EXPECT_TRUE(all_finite(run_stack(through("linear", name), greys, Way::fused).result)) << name;
+    EXPECT_TRUE(all_finite(run_stack(through("linear", name), greys, Way::plain).result)) << name;
   }
 }
 
