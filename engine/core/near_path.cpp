@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostFolders = 8;
+constexpr int kMostTries = 64;  // folders that are looked into
 
 std::string ending_of(const std::string& name) { return lower(fs::path(name).extension().string()); }
 
@@ -35,20 +36,21 @@ std::vector<std::string> names_like(const std::vector<fs::path>& folders, const 
 
 /// The names below `folders` that are spelled like `parts`, joined. A folder that is there may still be another than
 /// the one that is meant.
-std::string near_parts(const std::vector<fs::path>& folders, std::span<const std::string> parts) {
+std::string near_parts(const std::vector<fs::path>& folders, std::span<const std::string> parts, int& tries) {
   const std::string& part = parts.front();
   const bool is_last = parts.size() == 1;
   auto names = names_like(folders, part, is_last);
   if (is_last) return nearest_name(part, names);
-  while (true) {
+  while (++tries <= kMostTries) {
     const bool is_there = std::ranges::find(names, part) != names.end();
     const std::string name = is_there ? part : nearest_name(part, names);
     if (name.empty()) return {};
     std::vector<fs::path> inside;
     for (const auto& folder : folders) inside.push_back(folder / name);
-    if (const std::string near = near_parts(inside, parts.subspan(1)); !near.empty()) return name + "/" + near;
+    if (const std::string near = near_parts(inside, parts.subspan(1), tries); !near.empty()) return name + "/" + near;
     std::erase(names, name);
   }
+  return {};
 }
 
 }  // namespace
@@ -62,7 +64,8 @@ fs::path file_in(const fs::path& folder, const std::string& name, FileRecord* re
 
 std::string near_path(const std::vector<fs::path>& folders, const std::string& name) {
   const auto parts = split(name, '/');
-  return parts.size() > kMostFolders + 1 ? "" : near_parts(folders, parts);
+  int tries = 0;
+  return parts.size() > kMostFolders + 1 ? "" : near_parts(folders, parts, tries);
 }
 
 std::string tidy_path(const std::string& name) {

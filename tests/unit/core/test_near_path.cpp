@@ -45,6 +45,15 @@ TEST_F(NearPaths, WhatIsOfAnotherKindOrFarIsNotMeant) {
   EXPECT_EQ(near("a/b/c/d/e/f/g/h/i/j/k.cube"), "");
 }
 
+TEST_F(NearPaths, OfVeryManyFoldersThatAreSpelledAlikeSomeAreLookedInto) {
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j)
+      fs::create_directories(folder_ / "own" / ("folder" + std::to_string(i)) / ("folder" + std::to_string(j)));
+  std::ofstream(folder_ / "own/folder39/folder39/film.cube") << "x";
+  EXPECT_EQ(near("folderx/folderx/film.cube"), "");
+  EXPECT_EQ(near("folder39/folderx/film.cube"), "folder39/folder39/film.cube");
+}
+
 TEST_F(NearPaths, NamesAreWrittenWithOneSlashBetweenFolders) {
   EXPECT_EQ(tidy_path("LUTs\\Film.cube"), "LUTs/Film.cube");
   EXPECT_EQ(tidy_path("./LUTs//Film.cube"), "LUTs/Film.cube");
