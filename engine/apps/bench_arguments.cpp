@@ -139,7 +139,7 @@ Result<bench::StabilityRequest> BenchArguments::shots() const {
 Result<std::vector<std::filesystem::path>> BenchArguments::files() const {
   std::vector<std::filesystem::path> out;
   for (const auto& name : presets) {
-    AFTERGLOW_TRY(auto file, find_preset_file(name, {preset.paths.begin(), preset.paths.end()}));
+    AFTERGLOW_TRY(auto file, named_preset(name, preset.paths));
     const auto same = [&](const std::filesystem::path& other) { return other.stem() == file.stem(); };
     if (const auto other = std::ranges::find_if(out, same); other != out.end())
       return Error{ErrorKind::usage,

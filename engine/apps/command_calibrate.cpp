@@ -48,7 +48,7 @@ Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
   if (a.look.empty()) {
     request.look = looks / "look.lua";
   } else {
-    AFTERGLOW_TRY(request.look, find_preset_file(a.look, {}));
+    AFTERGLOW_TRY(request.look, named_preset(a.look, {}));
   }
   AFTERGLOW_TRY(request.size, parse_size(a.size));
   request.base.cache_folder = cache_folder();

@@ -184,14 +184,16 @@ Result<PresetOptions> PresetArguments::options() const {
   return options;
 }
 
-Result<std::filesystem::path> PresetArguments::preset_file() const {
-  AFTERGLOW_TRY(const std::filesystem::path found, find_preset_file(file, {paths.begin(), paths.end()}));
+Result<std::filesystem::path> named_preset(const std::string& name, const std::vector<std::string>& paths) {
+  AFTERGLOW_TRY(const std::filesystem::path found, find_preset_file(name, {paths.begin(), paths.end()}));
   std::error_code ec;
   const bool other = found.extension() != ".lua" && std::filesystem::is_regular_file(found, ec);
   if (other && has_pictures(found))
-    return Error{ErrorKind::script, "is a picture, not a preset", file, 0, "a Lua file, then the pictures"};
+    return Error{ErrorKind::script, "is a picture, not a preset", name, 0, "a Lua file, then the pictures"};
   return found;
 }
+
+Result<std::filesystem::path> PresetArguments::preset_file() const { return named_preset(file, paths); }
 
 void PresetArguments::tell_of_namesake(const std::filesystem::path& found, Diagnostics& diagnostics) const {
   std::error_code ec;

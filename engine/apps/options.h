@@ -39,6 +39,9 @@ void add_cuts(CLI::App& command, std::string& into, const std::string& group);
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
                             const std::string& help, const char* type);
 
+/// The file that the name of a preset on a command line means: see find_preset_file. Errors: script (none, a picture).
+Result<std::filesystem::path> named_preset(const std::string& name, const std::vector<std::string>& paths);
+
 /// PRESET, --set, --at, --arg, --path.
 struct PresetArguments {
   std::string file;
@@ -51,7 +54,7 @@ struct PresetArguments {
   void add_paths(CLI::App& command);      ///< --path alone
   Result<void> check_paths() const;       ///< Errors: usage (--path)
   Result<PresetOptions> options() const;
-  /// The file that PRESET means: see find_preset_file. Errors: script.
+  /// The file that PRESET means.
   Result<std::filesystem::path> preset_file() const;
   /// Warns, once, where PRESET is a name and a file NAME.lua of the current folder was not taken for it.
   void tell_of_namesake(const std::filesystem::path& found, Diagnostics& diagnostics) const;

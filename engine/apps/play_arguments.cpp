@@ -133,7 +133,7 @@ Result<PlayerOptions> PlayArguments::player() const {
   AFTERGLOW_TRY(out.live.stack.preset, preset.options());
   AFTERGLOW_TRY(out.preset, preset.preset_file());
   if (!other.empty()) {
-    AFTERGLOW_TRY(out.other_preset, find_preset_file(other, {preset.paths.begin(), preset.paths.end()}));
+    AFTERGLOW_TRY(out.other_preset, named_preset(other, preset.paths));
     std::error_code none;
     if (!std::filesystem::exists(out.other_preset, none)) {
       Error error = missing_file(out.other_preset);

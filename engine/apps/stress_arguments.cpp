@@ -61,7 +61,7 @@ void StressArguments::add(CLI::App& app) {
 
 Result<stress::StressRequest> StressArguments::request(const std::string& name) const {
   AFTERGLOW_CHECK(preset.check_paths());
-  stress::StressRequest out{.presets = presets,
+  stress::StressRequest out{.presets = {},
                             .effects = effects,
                             .paths = {preset.paths.begin(), preset.paths.end()},
                             .device = {},
@@ -72,6 +72,10 @@ Result<stress::StressRequest> StressArguments::request(const std::string& name) 
                             .seconds = 0,
                             .brief = quick,
                             .out = folder};
+  for (const std::string& look : presets) {
+    AFTERGLOW_TRY(const std::filesystem::path file, named_preset(look, preset.paths));
+    out.presets.push_back(file.string());
+  }
   DeviceArguments asked = device;
   asked.device = name;
   AFTERGLOW_TRY(out.device, asked.options());

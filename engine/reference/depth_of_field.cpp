@@ -273,7 +273,8 @@ double autofocus(const DoubleImage& depth, const FocusPoint& point) {
         const double at = middle * side + ((index + 0.5) / kPoints - 0.5) * point.area * depth.height;
         return glm::clamp(static_cast<int>(std::floor(at)), 0, side - 1);
       };
-      dioptres.push_back(1 / depth.at(place(point.x, depth.width, i), place(point.y, depth.height, j)).r);
+      const double z = depth.at(place(point.x, depth.width, i), place(point.y, depth.height, j)).r;
+      dioptres.push_back(1 / std::max(z, 1e-4));
     }
   std::ranges::sort(dioptres);
   return 1 / dioptres[dioptres.size() / 2];

@@ -263,10 +263,13 @@ void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderSour
   for (const auto& argument : request.arguments)
     if (std::find(names.begin(), names.end(), argument.name) == names.end()) {
       names.insert(names.end(), pass_keys().begin(), pass_keys().end());
+      const std::string nearest = nearest_name(argument.name, names), name = tidy_message(argument.name, 60);
+      const std::string declare =
+          nearest.empty() && argument.image ? fmt::format("; it declares one by: uniform sampler2D {};", name) : "";
       fail(pass,
-           fmt::format("shader '{}' has no input or parameter '{}' ({})", request.shader,
-                       tidy_message(argument.name, 60), shader.path.string()),
-           {argument.name}, join(names), nearest_name(argument.name, names));
+           fmt::format("shader '{}' has no input or parameter '{}' ({}){}", request.shader, name, shader.path.string(),
+                       declare),
+           {argument.name}, join(names), nearest);
     }
   const auto given = [&](const std::string& name) -> const Argument* {
     for (const auto& argument : request.arguments)

@@ -363,6 +363,11 @@ class Assembler {
       out_.params.push_back({stage_count_, param.name, param.type, 0, param.elements});
     }
     texts_.add(source, prefix, values, readers);
+    if (!scanned.shared.empty() && !waits(source))
+      out_.warnings.push_back(
+          fmt::format("{}:{}: '{}' is shared, and no barrier() stands between writing and reading: what others write "
+                      "may be missing",
+                      source.path.string(), scanned.shared.front().line, scanned.shared.front().name));
     const std::string function = prefix + info_of(kind).entry;
     if (source.interface.done)
       sample_rest(prefix + std::string(kDoneFunction), function, source.keeps_state);
@@ -374,6 +379,14 @@ class Assembler {
       row_ += apply(stage, function, arguments);
     ++stage_count_;
     return {};
+  }
+
+  static bool waits(const ShaderSource& source) {
+    const auto has_barrier = [](const ShaderFile& file) {
+      return std::ranges::find(file.scan.tokens, "barrier", &Token::text) != file.scan.tokens.end();
+    };
+    return has_barrier(*source.file) ||
+           std::ranges::any_of(source.includes, [&](const auto& include) { return has_barrier(*include.file); });
   }
 
   /// A pixel stage's colour. Where nothing covers the pixel, only what the stage makes of light that is there all the

@@ -211,6 +211,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc, Assembled
   out.target_channels = desc.target_channels;
   out.two_draws = assembled.two_draws;
   out.flat_parameters = desc.config.flat_parameters && !out.workgroup;
+  out.warnings = std::move(assembled.warnings);
   for (const auto number : made->unset)
     if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));
   for (std::size_t i = 0; i + 1 < made->loops.size(); i += 2) {

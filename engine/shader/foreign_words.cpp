@@ -56,6 +56,13 @@ constexpr std::array kForeign{
     Foreign{"static", "const"},
     Foreign{"groupshared", "shared"},
     Foreign{"constexpr", "const"},
+    Foreign{"iResolution", "vec2(target_size())"},
+    Foreign{"iTime", "a uniform float, to which the script gives g.time"},
+    Foreign{"iFrame", "a uniform float, to which the script gives g.frame"},
+    Foreign{"fragCoord", "vec2(pixel) + 0.5, whose y runs down"},
+    Foreign{"iChannel0", "source, of a uniform sampler2D source"},
+    Foreign{"PI", "3.14159265"},
+    Foreign{"M_PI", "3.14159265"},
 };
 
 /// What workgroups are told, and how much a device takes.
@@ -82,7 +89,8 @@ std::string_view why_not(std::string_view name) {
   if (name.starts_with("gl_")) return "what is drawn, and how, is the engine's affair";
   if (name == "double" || name.starts_with("dvec") || name.starts_with("dmat"))
     return "numbers of 64 bits are not switched on, and many devices have none; write float, vec and mat";
-  if (name.starts_with("dFd") || name.starts_with("fwidth") || name == "textureQueryLod")
+  if (name.starts_with("dFd") || name == "ddx" || name == "ddy" || name.starts_with("fwidth") ||
+      name == "textureQueryLod")
     return "pixels that lie beside each other need not be made beside each other; read both by `fetch` in a sample "
            "shader";
   if (std::ranges::count(kOfLevels, name) > 0)

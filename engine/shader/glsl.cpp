@@ -199,6 +199,22 @@ std::optional<Error> undefined_error(const std::string& log, const std::string& 
                            fmt::format("'{}' is declared here, but defined nowhere", original_names(name)));
 }
 
+/// Where the engine's own text alone does not compile: what it calls stands in the author's, between lines that the
+/// preprocessor leaves out.
+std::optional<Error> left_out_error(const std::string& log, const std::string& glsl,
+                                    const std::vector<std::string>& file_names) {
+  for (std::string_view rest = log;;) {
+    const std::size_t quote = rest.find('\'');
+    if (quote == std::string_view::npos) return std::nullopt;
+    rest.remove_prefix(quote + 1);
+    const std::string name(rest.substr(0, rest.find('\'')));
+    const LogLine place = first_place(glsl, name);
+    if (name.empty() || place.file >= file_names.size() || file_names[place.file].empty()) continue;
+    return error_where_named(place, file_names,
+                             fmt::format("'{}' stands in an #if that is not taken here", original_names(name)));
+  }
+}
+
 constexpr auto kRules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
 
 bool parse(glslang::TShader& shader, EShLanguage language, const std::string& glsl, EShMessages rules) {
@@ -246,7 +262,9 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   if (!parse(shader, language, glsl, kRules)) {
     glslang::TShader again(language);  // the first time it stops at the first error
     const bool more = !parse(again, language, glsl, all_errors);
-    return compile_error((more ? again : shader).getInfoLog(), file_names);
+    const std::string log = (more ? again : shader).getInfoLog();
+    Error error = compile_error(log.c_str(), file_names);
+    return error.file.empty() ? left_out_error(log, glsl, file_names).value_or(std::move(error)) : error;
   }
   glslang::TProgram program;
   program.addShader(&shader);

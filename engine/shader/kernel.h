@@ -146,6 +146,7 @@ struct AssembledKernel {
     Role role = Role::variable;
   };
   std::vector<UnsetVariable> unset;
+  std::vector<std::string> warnings;   ///< of its shaders: "look/shaders/glow.glsl:7: …"
   std::optional<Workgroup> workgroup;  ///< of a compute shader
   bool two_draws = false;              ///< see KernelDraw
   Hash hash;                           ///< of glsl

@@ -386,7 +386,7 @@ class ShaderScanner {
   /// Once everything is read: exactly one entry point, and names that a pass can give.
   Result<void> entry_point() {
     if (!entry_line_) {
-      Error error = fail(0, "the shader defines none of " + entry_names());
+      Error error = fail(0, fmt::format("the shader {} defines none of {}", file_, entry_names()));
       error.allowed = entry_signatures();
       std::vector<std::string> entries = split(entry_names(), ',');
       for (auto& entry : entries) entry = trim(entry);
@@ -427,7 +427,9 @@ class ShaderScanner {
   /// Inputs and parameters are keys of g:pass{…}; its own keys cannot be their names.
   Result<void> pass_key(const std::string& name, int line, bool source_is_taken) const {
     if (name == "source" && source_is_taken)
-      return fail(line, "'source' is what apply gets as its first argument; leave the uniform out");
+      return fail(line,
+                  "'source' is what apply gets as its first argument; leave the uniform out, or write sample_at, "
+                  "which reads any pixel of it");
     if (std::ranges::find(pass_keys(), name) != pass_keys().end())
       return fail(line, fmt::format("'{}' is a key of g:pass itself; choose another name", name));
     if (kind_of_entry(name))

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/ascii.h"
+#include "core/utf8.h"
 #include "shader/conditions.h"
 
 namespace afterglow {
@@ -192,13 +193,26 @@ class Tokenizer {
     return {};
   }
 
+  /// Beyond ASCII, as word processors and web pages put it in place of what was meant.
+  Error foreign_character(unsigned char first) const {
+    const std::size_t length = first < 0xc0 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    const std::string character(text_.substr(at_, length));
+    if (first < 0x80 || length == 1 || utf8_text(character) != character)
+      return shader_error(file_, line_, fmt::format("unexpected character (byte 0x{:02x})", first));
+    if (character == "\xc2\xa0") return shader_error(file_, line_, "unexpected no-break space; write a plain one");
+    Error error = shader_error(file_, line_, fmt::format("unexpected character '{}'", character));
+    const bool dash = character == "\xe2\x80\x93" || character == "\xe2\x80\x94" || character == "\xe2\x88\x92";
+    error.message += dash ? "; write -" : "; GLSL has letters of English alone outside of comments";
+    return error;
+  }
+
   Result<void> punctuation() {
     static constexpr std::string_view kKnown = "()[]{}.,;:?+-*/%<>=!&|^~#";
     const char c = peek();
     if (kKnown.find(c) == std::string_view::npos) {
       const auto byte = static_cast<unsigned char>(c);
       if (byte > 0x20 && byte < 0x7f) return shader_error(file_, line_, fmt::format("unexpected character '{}'", c));
-      return shader_error(file_, line_, fmt::format("unexpected character (byte 0x{:02x})", byte));
+      return foreign_character(byte);
     }
     if (c == '#' && !in_directive_) return shader_error(file_, line_, "'#' must be the first character of its line");
     push(TokenKind::punctuation, at_, at_ + 1);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 /// The words of a file, and what it gets from those that it includes.
 struct Known {
   std::vector<std::string> defined;  ///< at file scope, here and in libraries
+  std::map<std::string, int> lines;  ///< where the file's own are defined first
   std::vector<std::string> words;    ///< all of the file's own, in the order of the text
   std::vector<fs::path> files;       ///< its own, and those that it includes
 };
@@ -69,7 +71,10 @@ Result<Known> names_known_to(const fs::path& file, const SearchPath& path) {
   if (!scanned) return std::move(scanned).error();
   AFTERGLOW_TRY(const auto includes, resolve_includes(path, file, *scanned));
   Known known;
-  for (const auto& global : scanned->names) known.defined.push_back(global.name);
+  for (const auto& global : scanned->names) {
+    known.defined.push_back(global.name);
+    known.lines.emplace(global.name, global.line);
+  }
   known.files.push_back(file);
   for (const auto& include : includes) known.files.push_back(include.path);
   for (const auto& include : includes)
@@ -106,7 +111,11 @@ Error ShaderLibrary::with_known_names(Error error) const {
     const auto end = error.message.find(kNoFunction);
     if (end != std::string::npos)
       for (const auto& of : known->files) add_signatures(of, name, signatures);
-    if (!signatures.empty())
+    const auto here = known->lines.find(name);
+    if (end != std::string::npos && here != known->lines.end() && here->second > error.line)
+      error.message = fmt::format("{}: it stands below, at line {}, and GLSL knows what stands above alone: move it up",
+                                  error.message.substr(0, end + kNoFunction.size()), here->second);
+    else if (!signatures.empty())
       error.message =
           fmt::format("{}; it is {}", error.message.substr(0, end + kNoFunction.size()), join(signatures, " or "));
     return error;

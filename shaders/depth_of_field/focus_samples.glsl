@@ -12,5 +12,5 @@ uniform sampler2D depth;
 vec4 sample_at(ivec2 point) {
   ivec2 last = image_size(depth) - 1;
   float d = fetch(depth, clamp(ivec2(floor(first + spacing * vec2(point))), ivec2(0), last)).r;
-  return vec4(1.0 / max(device_input ? view_distance(d, inverse_clip, reversed_z) : d, 1e-6), 0.0, 0.0, 1.0);
+  return vec4(1.0 / max(device_input ? view_distance(d, inverse_clip, reversed_z) : d, 1e-4), 0.0, 0.0, 1.0);
 }

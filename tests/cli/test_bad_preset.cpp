@@ -181,6 +181,9 @@ TEST_F(PresetErrors, PictureInThePresetsPlaceIsCalledOne) {
     EXPECT_EQ(outcome.exit_code, kScript);
     EXPECT_EQ(outcome.err, picture + std::string(": error: is a picture, not a preset; allowed: a Lua file, then the "
                                                  "pictures\n"));
+    for (const auto& arguments :
+         {std::vector<std::string>{"bench", "look.lua", picture, "--quick"}, {"stress", picture}})
+      EXPECT_THAT(run(arguments).err, HasSubstr(picture + std::string(": error: is a picture, not a preset")));
   }
 }
 

@@ -115,6 +115,38 @@ TEST_F(ShaderHints, FunctionsOfTheLibraryAreToldAsTheyAre) {
   EXPECT_THAT(error("color", "float4(1.0)"), HasSubstr("; write vec4"));
 }
 
+TEST_F(ShaderHints, WhatStandsInAWrongPlaceIsTold) {
+  const auto told = [&](const std::string& shader) {
+    write("shaders/mine/mine.glsl", shader);
+    return run({"check", "look.lua"}).err;
+  };
+  EXPECT_THAT(told("vec4 apply(vec4 color) { return color * twice(0.5); }\nfloat twice(float x) { return 2.0 * x; }\n"),
+              HasSubstr("mine.glsl:1: error: 'twice': no matching overloaded function found: it stands below, at line "
+                        "2, and GLSL knows what stands above alone: move it up\n"));
+  EXPECT_THAT(told("#if QUALITY > 1\nvec4 apply(vec4 color) { return color; }\n#endif\n"),
+              HasSubstr("mine.glsl:2: error: 'apply' stands in an #if that is not taken here\n"));
+  EXPECT_THAT(told("// nothing\n"), HasSubstr("mine/mine.glsl defines none of apply, sample_at, compute_at"));
+  EXPECT_THAT(told("vec4 sample_at(ivec2 pixel) { return fetch(source, pixel); }\n"),
+              HasSubstr("; it declares one by: uniform sampler2D source;"));
+  EXPECT_THAT(told("vec4 apply(vec4 color) { return color * sin(iTime); }\n"),
+              HasSubstr("'iTime': undeclared identifier; write a uniform float, to which the script gives g.time"));
+}
+
+TEST_F(ShaderHints, SharedVariablesWithoutABarrierAreWarnedAbout) {
+  const std::string head =
+      "layout(local_size_x = 8, local_size_y = 8) in;\nuniform sampler2D source;\n"
+      "shared float t[64];\nvec4 compute_at(ivec2 pixel) {\n"
+      "  t[gl_LocalInvocationIndex] = fetch(source, pixel).r;\n";
+  const std::string tail = "  return vec4(t[63u - gl_LocalInvocationIndex]);\n}\n";
+  write("shaders/mine/mine.glsl", head + tail);
+  const Outcome without = run({"check", "look.lua"});
+  EXPECT_EQ(without.exit_code, kDone);
+  EXPECT_THAT(without.err,
+              HasSubstr("mine.glsl:3: 't' is shared, and no barrier() stands between writing and reading"));
+  write("shaders/mine/mine.glsl", head + "  barrier();\n" + tail);
+  EXPECT_EQ(run({"check", "look.lua"}).err, "");
+}
+
 TEST_F(ShaderHints, AShaderThatIsMissingIsNamedWithItsFile) {
   EXPECT_THAT(run({"check", "look.lua"}).err,
               HasSubstr("unknown shader 'mine/mine'; allowed: shaders/mine/mine.glsl beside the preset, or on the "

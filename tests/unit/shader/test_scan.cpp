@@ -374,7 +374,13 @@ INSTANTIATE_TEST_SUITE_P(Characters, ScanErrors,
                                          Bad{"}\n" + kEnd, 1, "'}' closes nothing"},
                                          Bad{"float a = \"text\";\n" + kEnd, 1, "no text in quotes"},
                                          Bad{"float a = 1 @ 2;\n" + kEnd, 1, "unexpected character '@'"},
-                                         Bad{"float caf\xc3\xa9;\n" + kEnd, 1, "unexpected character (byte 0xc3)"},
+                                         Bad{"float caf\xc3\xa9;\n" + kEnd, 1, "unexpected character '\xc3\xa9'"},
+                                         Bad{"float a = 1.0 \xe2\x80\x93 2.0;\n" + kEnd, 1, "; write -"},
+                                         Bad{"float a =\xc2\xa0"
+                                             "1.0;\n" +
+                                                 kEnd,
+                                             1, "no-break space; write a plain one"},
+                                         Bad{"float a = \xe2\x80;\n" + kEnd, 1, "unexpected character (byte 0xe2)"},
                                          Bad{std::string("float a\0;\n", 10) + kEnd, 1,
                                              "unexpected character (byte 0x00)"},
                                          Bad{"float a; # define B\n" + kEnd, 1, "'#' must be the first character"}));
