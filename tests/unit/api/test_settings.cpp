@@ -58,7 +58,7 @@ TEST_F(SettingsTest, TheSchemaHasHowAnEntryIsPutOverWhatItWasGiven) {
   EXPECT_EQ(of("opacity")["value"], 0.5);
   EXPECT_EQ(of("opacity")["max"], 1);
   EXPECT_EQ(of("blend")["value"], "normal");
-  EXPECT_EQ(of("blend")["choices"].size(), 8u);
+  EXPECT_EQ(of("blend")["choices"].size(), 11u);
   EXPECT_EQ(of("mask")["value"], "luma");
   EXPECT_EQ(of("mask.luma.from")["value"], 0.25);
   EXPECT_FALSE(of("mask.luma.from")["doc"].empty());
