@@ -62,6 +62,8 @@ fs::path file_in(const fs::path& folder, const std::string& name, FileRecord* re
   return {};
 }
 
+bool is_tidy_path(const std::string& name) { return is_safe_entry(name, kMostFolders); }
+
 std::string near_path(const std::vector<fs::path>& folders, const std::string& name) {
   const auto parts = split(name, '/');
   int tries = 0;
@@ -75,7 +77,7 @@ std::string tidy_path(const std::string& name) {
   if (parts.front().empty()) return {};  // of the whole system
   std::erase_if(parts, [](const std::string& part) { return part.empty() || part == "."; });
   std::string tidy = join(parts, "/");
-  return is_safe_entry(tidy, kMostFolders) ? tidy : "";
+  return is_tidy_path(tidy) ? tidy : "";
 }
 
 }  // namespace afterglow

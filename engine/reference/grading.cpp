@@ -27,6 +27,13 @@ Rgb cones_of(double x, double y) {
 /// y on the daylight locus.
 double judd(double x) { return 2.87 * x - 3 * x * x - 0.27509507; }
 
+/// x of daylight of 4000…25000 K (CIE 15).
+double daylight_x(double kelvin) {
+  const double t = 1000 / kelvin, t2 = t * t, t3 = t2 * t;
+  return kelvin <= 7000 ? 0.244063 + 0.09911 * t + 2.9678 * t2 - 4.6070 * t3
+                        : 0.237040 + 0.24748 * t + 1.9018 * t2 - 2.0064 * t3;
+}
+
 /// What is brighter than white stays.
 double soft_light(double base, double blend) {
   if (base >= 1) return base;
@@ -44,14 +51,10 @@ Rgb chroma(const Rgb& color, double scale) {
 }  // namespace
 
 glm::dvec2 white_of_kelvin(double kelvin) {
-  const double t = 1000 / kelvin, t2 = t * t, t3 = t2 * t;
-  glm::dvec2 day(kelvin <= 7000 ? 0.244063 + 0.09911 * t + 2.9678 * t2 - 4.6070 * t3
-                                : 0.237040 + 0.24748 * t + 1.9018 * t2 - 2.0064 * t3,
-                 0);
-  const double n = 1000 / 6504.0;  // D65's own x has other last digits
-  day.x += 0.31271 - (0.244063 + 0.09911 * n + 2.9678 * n * n - 4.6070 * n * n * n);
-  day.y = judd(day.x);
+  const double x_of_day = daylight_x(kelvin) + 0.31271 - daylight_x(6504);  // D65's own x has other last digits
+  const glm::dvec2 day(x_of_day, judd(x_of_day));
   if (kelvin >= 4000) return day;
+  const double t = 1000 / kelvin, t2 = t * t, t3 = t2 * t;
   glm::dvec2 lamp(0.179910 + 0.8776956 * t - 0.2343589 * t2 - 0.2661239 * t3, 0);
   const double x = lamp.x, x2 = x * x, x3 = x2 * x;
   lamp.y = kelvin < 2222 ? -1.1063814 * x3 - 1.34811020 * x2 + 2.18555832 * x - 0.20219683

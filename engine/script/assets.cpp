@@ -9,7 +9,6 @@
 #include "core/file_record.h"
 #include "core/inside.h"
 #include "core/near_path.h"
-#include "core/pack.h"
 #include "core/text.h"
 #include "image/reader.h"
 #include "script/graph_builder.h"
@@ -177,7 +176,7 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
   }
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
-  if (!is_safe_entry(name, 8)) {
+  if (!is_tidy_path(name)) {
     const std::string tidy = tidy_path(name);
     fail_at(lua, what,
             {"file", name,

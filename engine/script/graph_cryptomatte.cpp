@@ -9,7 +9,7 @@
 
 #include "core/file.h"
 #include "core/inside.h"
-#include "core/pack.h"
+#include "core/near_path.h"
 #include "core/text.h"
 #include "image/cryptomatte.h"
 #include "script/graph_calls.h"
@@ -34,7 +34,7 @@ std::map<std::string, std::uint32_t> manifest_beside(lua_State* lua, const std::
   };
   const std::filesystem::path folder = picture.has_parent_path() ? picture.parent_path() : ".";
   const std::filesystem::path file = folder / cryptomatte.manifest_file;
-  if (!is_safe_entry(cryptomatte.manifest_file, 8) || !lies_in(file, folder)) return warn("lies outside of its folder");
+  if (!is_tidy_path(cryptomatte.manifest_file) || !lies_in(file, folder)) return warn("lies outside of its folder");
   Runtime::of(lua).depends.beside.insert(file);
   FileRecord* record = Runtime::of(lua).path.record.get();
   if (!is_file(file, record)) return warn("is not there");

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/pack.h"
+#include "core/near_path.h"
 #include "core/text.h"
 #include "script/injection.h"
 #include "script/mask.h"
@@ -113,7 +113,7 @@ Result<SettingValue> parse_value_of(const std::string& text, const SettingSchema
       if (auto file = named_file(text, schema)) return *file;
     value.text = value.kind == Value::Kind::text ? value.text : trim(text);
     value.kind = Value::Kind::text;
-    if (any_file && !value.text.empty() && !is_safe_entry(value.text, 8)) {
+    if (any_file && !value.text.empty() && !is_tidy_path(value.text)) {
       const std::filesystem::path file(value.text);
       std::error_code ec;
       if (!std::filesystem::is_regular_file(file, ec))

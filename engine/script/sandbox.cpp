@@ -16,6 +16,7 @@ constexpr int kStep = 200;                     // instructions between two looks
 constexpr int kShortStep = 4;                  // the same once there are texts that one instruction is long busy with
 constexpr std::size_t kLongText = 256u << 10;  // bytes of such a text
 constexpr int kMaxDepth = 10'000;              // nested calls
+constexpr int kMostLevels = 300;               // that are looked through: lua_getstack counts from the top each time
 constexpr std::size_t kLookEvery = 1u << 20;   // bytes allocated between two looks at the clock
 constexpr std::uint64_t kRefusalCost = 1'000'000;  // a refused allocation costs a full collection
 
@@ -167,7 +168,7 @@ const void* Sandbox::keep(Error error) {
   return reinterpret_cast<const void*>(raised_);
 }
 
-const Error* Sandbox::raised(lua_State* lua, int index) const {
+Error* Sandbox::raised(lua_State* lua, int index) {
   if (!lua_islightuserdata(lua, index)) return nullptr;
   const auto id = reinterpret_cast<std::uintptr_t>(lua_touserdata(lua, index));
   if (id == 0 || id > raised_ || id + errors_.size() <= raised_) return nullptr;
@@ -187,18 +188,16 @@ void Sandbox::raise(Error error) {
 /// called is a function, not a file that is loaded.
 void Sandbox::add_callers(lua_State* lua, Error& error) const {
   constexpr std::size_t kMostCallers = 3;
-  constexpr int kMostLevels = 300;  // lua_getstack counts from the top each time
   if (!error.trail.empty()) return;
-  Location inner;
+  std::optional<Location> inner;
   lua_Debug info{};
   for (int level = 0; level < kMostLevels && lua_getstack(lua, level, &info); ++level) {
-    if (!lua_getinfo(lua, "Sl", &info) || info.currentline <= 0) continue;
-    const Location where = location(info.source, info.currentline);
-    if (where.source < 0 || sources_[static_cast<std::size_t>(where.source)].library) continue;
-    const std::string& path = sources_[static_cast<std::size_t>(where.source)].path;
-    if (inner.source < 0 && path != error.file) return;
-    if (inner.source >= 0 && where.source != inner.source)
-      error.trail.push_back(fmt::format("called at {}:{}", path, where.line));
+    const auto where = place_in_script(lua, info);
+    if (!where) continue;
+    const std::string& path = sources_[static_cast<std::size_t>(where->source)].path;
+    if (!inner && path != error.file) return;
+    if (inner && where->source != inner->source)
+      error.trail.push_back(fmt::format("called at {}:{}", path, where->line));
     if (error.trail.size() >= kMostCallers || std::string_view(info.what) == "main") return;
     inner = where;
   }
@@ -207,8 +206,8 @@ void Sandbox::add_callers(lua_State* lua, Error& error) const {
 // The message handler: runs where the error was raised, so it knows the line. Must not itself raise.
 int Sandbox::on_error(lua_State* lua) {
   Sandbox& box = of(lua);
-  if (const Error* known = box.raised(lua, 1)) {
-    box.add_callers(lua, box.errors_[static_cast<std::size_t>(known - box.errors_.data())]);
+  if (Error* const known = box.raised(lua, 1)) {
+    box.add_callers(lua, *known);
     return 1;
   }
   Error error{ErrorKind::script, ""};
@@ -277,14 +276,19 @@ Location Sandbox::location(const char* chunk_name, int line) const {
   return {index, line};
 }
 
+/// Where a frame of the stack is; none of native functions and of the library.
+std::optional<Location> Sandbox::place_in_script(lua_State* lua, lua_Debug& frame) const {
+  if (!lua_getinfo(lua, "Sl", &frame) || frame.currentline <= 0) return std::nullopt;
+  const Location where = location(frame.source, frame.currentline);
+  if (where.source < 0 || sources_[static_cast<std::size_t>(where.source)].library) return std::nullopt;
+  return where;
+}
+
 Location Sandbox::caller(lua_State* lua, int level) const {
   lua_Debug info{};
-  // Frames between here and a script's are native or the library's, so few; lua_getstack counts from the top each time.
-  for (const int last = level + 300; level < last && lua_getstack(lua, level, &info); ++level) {
-    if (!lua_getinfo(lua, "Sl", &info) || info.currentline <= 0) continue;
-    const Location where = location(info.source, info.currentline);
-    if (where.source >= 0 && !sources_[static_cast<std::size_t>(where.source)].library) return where;
-  }
+  // Frames between here and a script's are native or the library's, so few.
+  for (const int last = level + kMostLevels; level < last && lua_getstack(lua, level, &info); ++level)
+    if (const auto where = place_in_script(lua, info)) return *where;
   return {};
 }
 

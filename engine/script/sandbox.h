@@ -86,7 +86,7 @@ class Sandbox {
   /// Raises `error` as a Lua error; scripts that catch it see a string.
   [[noreturn]] void raise(Error error);
   /// The error behind a value that was raised; null when it is none of ours.
-  const Error* raised(lua_State* lua, int index) const;
+  Error* raised(lua_State* lua, int index);
 
   /// Counts work done natively as instructions; raises when the budget is spent.
   void charge(std::uint64_t instructions);
@@ -147,6 +147,7 @@ class Sandbox {
   const void* keep(Error error);
   static void* allocate(void* self, void* block, std::size_t old_size, std::size_t new_size);
   static void on_count(lua_State* lua, lua_Debug* info);
+  std::optional<Location> place_in_script(lua_State* lua, lua_Debug& frame) const;
   static int on_error(lua_State* lua);
   void add_callers(lua_State* lua, Error& error) const;
 

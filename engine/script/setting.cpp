@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/near_path.h"
-#include "core/pack.h"
 #include "core/text.h"
 #include "image/srgb.h"
 #include "script/read_only.h"
@@ -190,7 +189,7 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
       if (given.kind != Kind::text) return fail("not the name of a file");
       value.choice = given.text;
       if (given.text.empty()) return value;
-      if (!is_safe_entry(given.text, 8)) {
+      if (!is_tidy_path(given.text)) {
         const std::string tidy = tidy_path(given.text);
         return tidy.empty() ? fail("not a name inside of the folders that scripts may read")
                             : fail("not how scripts name a file", tidy);

@@ -2,11 +2,11 @@
 // What names of files may mean where there is no such file.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "../image/temporary_folder.h"
 #include "core/near_path.h"
 
 namespace afterglow {
@@ -16,17 +16,14 @@ namespace fs = std::filesystem;
 
 class NearPaths : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "afterglow-near-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
+  NearPaths() {
     for (const char* file : {"own/LUTs/Film.cube", "own/LUTs/Film.clf", "own/luts.txt", "base/luts/cold.cube"}) {
       fs::create_directories((folder_ / file).parent_path());
       std::ofstream(folder_ / file) << "x";
     }
   }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string near(const std::string& name) const { return near_path({folder_ / "own", folder_ / "base"}, name); }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(NearPaths, CaseAndSlipsDoNotCountInAnyPart) {
@@ -64,12 +61,12 @@ TEST_F(NearPaths, NamesAreWrittenWithOneSlashBetweenFolders) {
 
 TEST_F(NearPaths, AFileIsFoundInEitherFormOfUnicode) {
   const std::string together = "Bl\u00fcte.cube", apart = "Blu\u0308te.cube";
-  EXPECT_EQ(file_in(folder_, together, nullptr), "");
+  EXPECT_EQ(file_in(folder_.path(), together, nullptr), "");
   std::ofstream(folder_ / apart) << "x";
-  EXPECT_EQ(file_in(folder_, together, nullptr), folder_ / apart);
+  EXPECT_EQ(file_in(folder_.path(), together, nullptr), folder_ / apart);
   std::ofstream(folder_ / together) << "x";
-  EXPECT_EQ(file_in(folder_, together, nullptr), folder_ / together) << "the one that is named first of all";
-  EXPECT_EQ(file_in(folder_, apart, nullptr), folder_ / apart);
+  EXPECT_EQ(file_in(folder_.path(), together, nullptr), folder_ / together) << "the one that is named first of all";
+  EXPECT_EQ(file_in(folder_.path(), apart, nullptr), folder_ / apart);
 }
 
 }  // namespace
